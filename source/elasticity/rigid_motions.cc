@@ -22,101 +22,125 @@ namespace Debond
 
 
 
+  namespace
+  {
+    template <int dim>
+    constexpr unsigned int n_of_body = dim *(dim + 1) / 2;
+
+
+
+    /// Body by body translations and rotations about the centre, these with a
+    /// displacement of one at a distance of `length`.
+    template <int dim>
+    struct UnitMotions
+    {
+      dealii::Point<dim> centre;
+      double             length;
+
+      /// The sum of the motions of one body with these @p parts.
+      RigidMotion<dim>
+      sum(const Eigen::VectorXd &parts) const
+      {
+        RigidMotion<dim> motion;
+        motion.centre = centre;
+        for (unsigned int d = 0; d < dim; ++d)
+          motion.translation[d] = parts[d];
+        for (unsigned int d = dim; d < n_of_body<dim>; ++d)
+          motion.rotation[d - dim] = parts[d] / length;
+        return motion;
+      }
+
+      /// What a support resists of each of @p n motions.
+      Eigen::VectorXd
+      resisted(const Support<dim> &support, const unsigned int n) const
+      {
+        Eigen::VectorXd row   = Eigen::VectorXd::Zero(n);
+        const auto      first = n_of_body<dim> * support.body;
+        for (unsigned int k = 0; k < n_of_body<dim>; ++k)
+          row[first + k] =
+            sum(Eigen::VectorXd::Unit(n_of_body<dim>, k))(support.position) *
+            support.direction;
+        // Nothing if both are the same, as beside a cut that ends inside.
+        if (support.other != dealii::numbers::invalid_unsigned_int)
+          row.segment<n_of_body<dim>>(n_of_body<dim> * support.other) -=
+            Eigen::VectorXd(row.segment<n_of_body<dim>>(first));
+        return row;
+      }
+    };
+
+
+
+    template <int dim>
+    std::string
+    name_of(const unsigned int motion, const std::vector<std::string> &bodies)
+    {
+      const char *const  axes[] = {"x", "y", "z"};
+      const unsigned int d      = motion % n_of_body<dim>;
+      return (d < dim ?
+                std::string("translation in ") + axes[d] :
+                std::string("rotation about ") + axes[dim == 2 ? 2 : d - dim]) +
+             bodies[motion / n_of_body<dim>];
+    }
+  } // namespace
+
+
+
   template <int dim>
   FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
                      const double                     diameter,
                      const std::vector<std::string>  &bodies)
   {
-    constexpr unsigned int n_of_body = dim * (dim + 1) / 2;
-    using Motions                    = Eigen::VectorXd;
-    const unsigned int n_motions =
-      n_of_body * static_cast<unsigned int>(bodies.size());
-
-    const char *const axes[] = {"x", "y", "z"};
-
+    const unsigned int n =
+      n_of_body<dim> * static_cast<unsigned int>(bodies.size());
     dealii::Tensor<1, dim> centre;
     for (const Support<dim> &support : supports)
       centre += support.position / double(supports.size());
-
     // A side can be much smaller than the body that it holds.
     double spread = 0.;
     for (const Support<dim> &support : supports)
       spread = std::max(spread, (support.position - centre).norm());
-    const double length =
-      spread > Tolerance::one_support * diameter ? spread : diameter;
+    const UnitMotions<dim> motions = {
+      dealii::Point<dim>(centre),
+      spread > Tolerance::one_support * diameter ? spread : diameter};
 
     // Gram matrix of the supports' displacements under unit motions; its null
     // space holds the free motions.
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
     for (const Support<dim> &support : supports)
       {
-        const dealii::Tensor<1, dim>  x = (support.position - centre) / length;
-        const dealii::Tensor<1, dim> &d = support.direction;
-
-        Motions            row   = Motions::Zero(n_motions);
-        const unsigned int first = n_of_body * support.body;
-        for (unsigned int i = 0; i < dim; ++i)
-          row[first + i] = d[i];
-        if constexpr (dim == 2)
-          row[first + 2] = d[1] * x[0] - d[0] * x[1];
-        else
-          {
-            const dealii::Tensor<1, 3> moment = dealii::cross_product_3d(x, d);
-            for (unsigned int i = 0; i < 3; ++i)
-              row[first + 3 + i] = moment[i];
-          }
-        // Nothing if both are the same, as beside a cut that ends inside.
-        if (support.other != dealii::numbers::invalid_unsigned_int)
-          row.segment<n_of_body>(n_of_body * support.other) -=
-            Motions(row.segment<n_of_body>(first));
+        const Eigen::VectorXd row = motions.resisted(support, n);
         gram += row * row.transpose();
       }
-
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     const double                                         threshold =
       Tolerance::free_motion * static_cast<double>(supports.size());
 
-    Eigen::MatrixXd null_projector =
-      Eigen::MatrixXd::Zero(n_motions, n_motions);
-    Motions null_vector = Motions::Zero(n_motions);
-
+    // Of the projector on the null space, and the last vector of its basis.
+    Eigen::VectorXd       diagonal = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd       last     = Eigen::VectorXd::Zero(n);
     FreeRigidMotions<dim> result;
-    for (unsigned int k = 0; k < n_motions; ++k)
+    for (unsigned int k = 0; k < n; ++k)
       if (eigen.eigenvalues()[k] <= threshold)
         {
-          null_vector = eigen.eigenvectors().col(k);
-          null_projector += null_vector * null_vector.transpose();
-
+          last = eigen.eigenvectors().col(k);
+          diagonal += last.cwiseAbs2();
           result.motions.emplace_back();
-          for (unsigned int first = 0; first < n_motions; first += n_of_body)
-            {
-              RigidMotion<dim> motion;
-              motion.centre = dealii::Point<dim>(centre);
-              for (unsigned int d = 0; d < dim; ++d)
-                motion.translation[d] = null_vector[first + d];
-              for (unsigned int d = dim; d < n_of_body; ++d)
-                motion.rotation[d - dim] = null_vector[first + d] / length;
-              result.motions.back().push_back(motion);
-            }
+          for (unsigned int first = 0; first < n; first += n_of_body<dim>)
+            result.motions.back().push_back(
+              motions.sum(last.segment<n_of_body<dim>>(first)));
         }
 
-    std::vector<std::string> pure;
     std::vector<std::string> components;
-    for (unsigned int k = 0; k < n_motions; ++k)
+    for (unsigned int k = 0; k < n; ++k)
       {
-        const unsigned int d = k % n_of_body;
-        const std::string  name =
-          (d < dim ?
-             std::string("translation in ") + axes[d] :
-             std::string("rotation about ") + axes[dim == 2 ? 2 : d - dim]) +
-          bodies[k / n_of_body];
-        if (null_projector(k, k) > 1. - Tolerance::pure_motion)
-          pure.push_back(name);
-        if (std::abs(null_vector[k]) > 0.1)
-          components.push_back(name);
+        if (diagonal[k] > 1. - Tolerance::pure_motion)
+          result.names.push_back(name_of<dim>(k, bodies));
+        if (std::abs(last[k]) > 0.1)
+          components.push_back(name_of<dim>(k, bodies));
       }
-    result.names = pure.empty() ? components : pure;
+    if (result.names.empty())
+      result.names = components;
     return result;
   }
 
