@@ -29,7 +29,7 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        throw LoadError(entry, error.what());
+        throw EntryError(entry, error.what());
       }
   }
 
@@ -60,7 +60,7 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        throw LoadError("Loads/Body force", error.what());
+        throw EntryError("Loads/Body force", error.what());
       }
   }
 

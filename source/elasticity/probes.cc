@@ -59,7 +59,8 @@ namespace Debond
       const unsigned int first   = dealii::Utilities::MPI::min(
         least == deepest ? rank : number_of_ranks(ranks), ranks);
       if (deepest < -Tolerance::point_in_body)
-        throw ProbeError(probe.name, "the point is not in the body");
+        throw EntryError("Probes/" + probe.name,
+                         "the point is not in the body");
 
       Weights weights;
       if (rank == first)

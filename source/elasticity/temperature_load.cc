@@ -23,7 +23,7 @@ namespace Debond
         }
       catch (const std::invalid_argument &error)
         {
-          throw TemperatureError(error.what());
+          throw EntryError("Loads/Temperature change", error.what());
         }
     }
   } // namespace

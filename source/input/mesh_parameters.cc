@@ -220,14 +220,14 @@ namespace Debond
 
   namespace
   {
-    /// Throws PartError where the condition has no value.
+    /// Throws EntryError where the condition has no value.
     template <int dim>
     std::function<bool(const dealii::Point<dim> &)>
-    make_condition(const std::string                   &part,
+    make_condition(const std::string                   &entry,
                    const std::string                   &expression,
                    const std::map<std::string, double> &constants)
     {
-      return [part, function = make_function<dim>(expression, constants, 1)](
+      return [entry, function = make_function<dim>(expression, constants, 1)](
                const dealii::Point<dim> &point) {
         try
           {
@@ -235,7 +235,7 @@ namespace Debond
           }
         catch (const std::invalid_argument &error)
           {
-            throw PartError(part, error.what());
+            throw EntryError(entry, error.what());
           }
       };
     }
@@ -283,8 +283,9 @@ namespace Debond
                                 static_cast<unsigned int>(axis));
       std::function<bool(const dealii::Point<dim> &)> condition;
       if (ampersands != std::string::npos)
-        condition =
-          make_condition<dim>("", text.substr(ampersands + 2), constants);
+        condition = make_condition<dim>("Mesh/Cuts",
+                                        text.substr(ampersands + 2),
+                                        constants);
       const auto   extents  = body.extents();
       const double rounding = Tolerance::same_coordinate *
                               *std::max_element(extents.begin(), extents.end());
@@ -352,7 +353,7 @@ namespace Debond
                     ", which is all of it"));
         }
       part.contains =
-        make_condition<dim>(name,
+        make_condition<dim>("Parts/" + name,
                             is_of_boundary ? text.substr(colon + 1) : text,
                             constants);
       return part;

@@ -83,7 +83,7 @@ namespace Debond
         dealii::Triangulation<dim> mesh;
         body->make_mesh(mesh);
       }
-    catch (const PartError &)
+    catch (const EntryError &)
       {
         return nullptr;
       }

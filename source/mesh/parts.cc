@@ -154,12 +154,12 @@ namespace Debond
         const bool        is_of_all = parts[p].boundary == whole_boundary &&
                                before.boundaries.count(whole_boundary) == 0;
         if (n_inside[p] == 0)
-          throw PartError(parts[p].name,
-                          words("no ",
-                                is_of_all ? "outer " : "",
-                                kind,
-                                " has its centre in this part",
-                                is_of_all ? extent_of(mesh) : ""));
+          throw EntryError("Parts/" + parts[p].name,
+                           words("no ",
+                                 is_of_all ? "outer " : "",
+                                 kind,
+                                 " has its centre in this part",
+                                 is_of_all ? extent_of(mesh) : ""));
         if (is_of_all)
           names.notes.push_back(words("the part ",
                                       parts[p].name,

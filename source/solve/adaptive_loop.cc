@@ -478,7 +478,7 @@ namespace Debond
             body = body->refined(times);
           }
       }
-    catch (const PartError &)
+    catch (const EntryError &)
       {
         // The scene without refinement says which entry that is.
         return std::make_shared<const Scene<dim>>(problem,

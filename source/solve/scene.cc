@@ -40,23 +40,6 @@ namespace Debond
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
     }
-
-
-
-    std::string
-    entry_of(const SupportError &error)
-    {
-      switch (error.subject)
-        {
-          case SupportError::Subject::roller:
-            return "Boundary conditions/Roller boundaries";
-          case SupportError::Subject::gap:
-            return error.name.empty() ? "Contact law/Initial gap" :
-                                        "Contact law/Initial gap " + error.name;
-          default:
-            return "Boundary conditions/Displacement " + error.name;
-        }
-    }
   } // namespace
 
 
@@ -75,29 +58,20 @@ namespace Debond
     const auto    describe = [&](const std::invalid_argument &error) {
       if (entry == "Mesh/Source" && !elastic_body->cuts.empty())
         entry = "Mesh/Cuts";
-      if (const auto *load = dynamic_cast<const LoadError *>(&error))
-        entry = load->entry;
-      if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
-        entry = "Loads/Temperature change";
-      if (const auto *piece = dynamic_cast<const PieceError *>(&error))
-        entry = piece->entry;
-      if (const auto *part = dynamic_cast<const PartError *>(&error))
-        entry = part->part.empty() ? "Mesh/Cuts" : "Parts/" + part->part;
-      if (const auto *support = dynamic_cast<const SupportError *>(&error))
-        if (entry = entry_of(*support); given.locations.count(entry) == 0)
-          entry = given.supports.rollers.count(support->name) > 0 ?
-                       "Boundary conditions/Roller boundaries" :
-                       "Boundary conditions/Clamped boundaries";
-      if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
-        entry = "Probes/" + probe->probe;
+      if (const auto *own = dynamic_cast<const EntryError *>(&error))
+        entry = own->entry;
+      if (const auto *support = dynamic_cast<const SupportError *>(&error);
+          support != nullptr && given.locations.count(entry) == 0)
+        entry = given.supports.rollers.count(support->name) > 0 ?
+                     "Boundary conditions/Roller boundaries" :
+                     "Boundary conditions/Clamped boundaries";
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
         {
-          const std::string everywhere = bonds->is_threshold ?
-                                              "Contact law/Bond threshold" :
-                                              given.law.stiffness_entry;
-          entry                        = everywhere + ' ' + bonds->boundary;
-          if (given.locations.count(entry) == 0)
-            entry = everywhere;
+          if (!bonds->is_threshold)
+            entry = given.law.stiffness_entry;
+          if (const std::string own = entry + ' ' + bonds->boundary;
+              given.locations.count(own) > 0)
+            entry = own;
         }
       return given.locations.at(entry) + ": " + entry + ": " + error.what();
     };
@@ -166,7 +140,7 @@ namespace Debond
     // Where parts meet both are in one sum, of whose 16 digits the softer one
     // has four left.
     if (!moduli.empty() && *moduli.rbegin() > 1e12 * *moduli.begin())
-      throw PieceError("Material/Young modulus",
+      throw EntryError("Material/Young modulus",
                        words("moduli of ",
                              *moduli.begin(),
                              " and ",

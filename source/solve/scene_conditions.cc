@@ -40,13 +40,13 @@ namespace Debond
         for (const dealii::types::boundary_id id : conditions.names.at(name))
           {
             if (conditions.contact.count(id) == 0)
-              throw PieceError(entry,
+              throw EntryError(entry,
                                name + " is not in contact, but " +
                                  join({in_contact.begin(), in_contact.end()},
                                       ", "));
             const auto [other, is_first] = taken.emplace(id, name);
             if (!is_first)
-              throw PieceError(entry,
+              throw EntryError(entry,
                                name + " overlaps " + other->second +
                                  ", for which it is set as well");
             function(name, id);
@@ -104,7 +104,7 @@ namespace Debond
                            conditions.contact.end(),
                            sides.begin(),
                            sides.end()))
-          throw PieceError("Boundary conditions/Contact boundary",
+          throw EntryError("Boundary conditions/Contact boundary",
                            "the bodies on both sides of " + name +
                              " could go through each other: it has to have " +
                              name + ", which is both sides; Bond stiffness " +
@@ -140,7 +140,7 @@ namespace Debond
         {
           const auto [other, is_first] = taken.emplace(id, name);
           if (!is_first)
-            throw PieceError(parameters.entry_of(name),
+            throw EntryError(parameters.entry_of(name),
                              "the region overlaps " + other->second +
                                ", which has a material of its own as well");
           materials.set(id, material);

@@ -6,9 +6,10 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/types.h>
 
+#include <debond/base/entry_error.h>
+
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 namespace Debond
@@ -24,13 +25,15 @@ namespace Debond
 
 
   /// A stiffness or a threshold that is none somewhere.
-  class BondFieldError : public std::invalid_argument
+  class BondFieldError : public EntryError
   {
   public:
     BondFieldError(const bool         is_threshold,
                    const std::string &boundary,
                    const std::string &message)
-      : std::invalid_argument(message)
+      : EntryError(is_threshold ? "Contact law/Bond threshold" :
+                                  "Contact law/Bond stiffness",
+                   message)
       , is_threshold(is_threshold)
       , boundary(boundary)
     {}

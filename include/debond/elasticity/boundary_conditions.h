@@ -5,13 +5,13 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/mesh/body.h>
 
 #include <array>
 #include <map>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -89,7 +89,7 @@ namespace Debond
 
 
   /// A prescribed displacement or a gap that cannot be.
-  class SupportError : public std::invalid_argument
+  class SupportError : public EntryError
   {
   public:
     enum class Subject
@@ -102,12 +102,16 @@ namespace Debond
     SupportError(const Subject      subject,
                  const std::string &name,
                  const std::string &message)
-      : std::invalid_argument(message)
-      , subject(subject)
+      : EntryError(subject == Subject::roller ?
+                     "Boundary conditions/Roller boundaries" :
+                   subject == Subject::displacement ?
+                     "Boundary conditions/Displacement " + name :
+                   name.empty() ? "Contact law/Initial gap" :
+                                  "Contact law/Initial gap " + name,
+                   message)
       , name(name)
     {}
 
-    const Subject     subject;
     const std::string name; ///< of the piece of the boundary
   };
 } // namespace Debond

@@ -9,29 +9,15 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <debond/base/dof_vector.h>
+#include <debond/base/entry_error.h>
 
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// A load that cannot be used.
-  class LoadError : public std::invalid_argument
-  {
-  public:
-    LoadError(const std::string &entry, const std::string &message)
-      : std::invalid_argument(message)
-      , entry(entry)
-    {}
-
-    const std::string entry; ///< of the scene, such as "Loads/Body force"
-  };
-
-
-
   /// A force on a boundary, per area (per length in 2D).
   template <int dim>
   struct Traction
@@ -41,8 +27,8 @@ namespace Debond
 
     std::string entry = "Loads/Traction"; ///< of the scene
 
-    /// On a face with this outward unit normal. Throws LoadError with the place
-    /// if it is not finite there.
+    /// On a face with this outward unit normal. Throws EntryError with the
+    /// place if it is not finite there.
     dealii::Tensor<1, dim>
     operator()(const dealii::Point<dim>     &point,
                const dealii::Tensor<1, dim> &normal) const;
@@ -70,7 +56,7 @@ namespace Debond
              const dealii::Point<dim>        &point,
              const dealii::Tensor<1, dim>    &normal) const;
 
-    /// The body force; throws LoadError as tractions do.
+    /// The body force; throws EntryError as tractions do.
     dealii::Tensor<1, dim>
     force_at(const dealii::Point<dim> &point) const;
   };
@@ -98,7 +84,7 @@ namespace Debond
    * this costs more than 1e-6 of all tractions of its entry, @p notes get one
    * line that names the worst face.
    *
-   * Throws LoadError with the place if a load is not finite at a point of the
+   * Throws EntryError with the place if a load is not finite at a point of the
    * rules.
    */
   template <int dim>

@@ -3,11 +3,11 @@
 #define debond_elasticity_probes_h
 
 #include <debond/base/dof_vector.h>
+#include <debond/base/entry_error.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/mesh/body.h>
 
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,20 +32,6 @@ namespace Debond
 
 
 
-  /// A point that is not in the body.
-  class ProbeError : public std::invalid_argument
-  {
-  public:
-    ProbeError(const std::string &probe, const std::string &message)
-      : std::invalid_argument(message)
-      , probe(probe)
-    {}
-
-    const std::string probe; ///< its name
-  };
-
-
-
   /// Cartesian vectors, by the names of the probes.
   template <int dim>
   using ProbeValues =
@@ -64,7 +50,7 @@ namespace Debond
   public:
     Probes() = default;
 
-    /// @p pieces: of the mesh of @p unknowns. Throws ProbeError, or
+    /// @p pieces: of the mesh of @p unknowns. Throws EntryError, or
     /// std::out_of_range if there is no such piece. To be called by all ranks,
     /// and so is values().
     Probes(const ElasticUnknowns<dim>    &unknowns,

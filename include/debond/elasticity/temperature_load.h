@@ -5,28 +5,19 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <debond/base/dof_vector.h>
+#include <debond/base/entry_error.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/mesh/by_region.h>
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// A change of temperature that cannot be used.
-  class TemperatureError : public std::invalid_argument
-  {
-  public:
-    using std::invalid_argument::invalid_argument;
-  };
-
-
-
   /// The change of temperature of each active cell, as displacements of this
   /// @p degree see it: of degree 1 the mean, of degree 2 the values at the
-  /// points of strain_rule(). Empty if there is none. Throws TemperatureError
+  /// points of strain_rule(). Empty if there is none. Throws EntryError
   /// with the place if the change is not finite somewhere.
   template <int dim>
   std::vector<double>

@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/tria.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/mesh/interpolation.h>
 
 #include <array>
@@ -13,7 +14,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,18 +41,6 @@ namespace Debond
   std::string
   boundary_name(const BoundaryNames             &names,
                 const dealii::types::boundary_id id);
-
-  /// A part of a body that is none.
-  class PartError : public std::invalid_argument
-  {
-  public:
-    PartError(const std::string &part, const std::string &message)
-      : std::invalid_argument(message)
-      , part(part)
-    {}
-
-    const std::string part; ///< its name
-  };
 
   /// All outer faces, with names or without, unless a body has a boundary of
   /// this name.
@@ -185,7 +173,7 @@ namespace Debond
 
     /// Fills an empty triangulation and says which ids the boundaries() and
     /// regions() have. Throws std::invalid_argument if the body is none,
-    /// PartError if a part has no face or cell.
+    /// EntryError if a part has no face or cell.
     PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const;
 

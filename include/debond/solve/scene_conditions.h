@@ -2,6 +2,7 @@
 #ifndef debond_solve_scene_conditions_h
 #define debond_solve_scene_conditions_h
 
+#include <debond/base/entry_error.h>
 #include <debond/contact/bond_field.h>
 #include <debond/contact/law.h>
 #include <debond/elasticity/material.h>
@@ -10,41 +11,28 @@
 #include <debond/mesh/by_region.h>
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// A piece of the body that cannot have what an entry says of it.
-  class PieceError : public std::invalid_argument
-  {
-  public:
-    PieceError(const std::string &entry, const std::string &message)
-      : std::invalid_argument(message)
-      , entry(entry)
-    {}
-
-    const std::string entry;
-  };
-
   /// What is clamped and in contact, on a mesh whose pieces have these names.
-  /// Throws PieceError, also if bodies at an interface are not in contact.
+  /// Throws EntryError, also if bodies at an interface are not in contact.
   BoundaryConditions
   make_conditions(const ProblemParameters &given, const PieceNames &names);
 
-  /// Throws PieceError if regions with materials of their own overlap.
+  /// Throws EntryError if regions with materials of their own overlap.
   ByRegion<Material>
   make_materials(const MaterialParameters &parameters,
                  const RegionNames        &regions);
 
-  /// Prescribed displacements and gaps. Throws PieceError.
+  /// Prescribed displacements and gaps. Throws EntryError.
   template <int dim>
   Supports<dim>
   make_supports(const ProblemParameters  &given,
                 const BoundaryConditions &conditions);
 
-  /// The bonds that vary. Throws PieceError.
+  /// The bonds that vary. Throws EntryError.
   template <int dim>
   std::unique_ptr<BondField<dim>>
   make_bond_field(const ProblemParameters  &given,
