@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -19,14 +18,16 @@ namespace Debond
   namespace
   {
     template <int dim>
-    using SideOf = typename EquilibriumProblem<dim>::ContactSide;
+    using SideOf = typename EquilibriumMesh<dim>::Side;
 
 
 
+    /// Checks the data of the scene first.
     template <int dim>
     EquilibriumProblem<dim>
     equilibrium_problem(const Scene<dim> &scene)
     {
+      check_certifiable(scene);
       const auto &triangulation =
         scene.problem().unknowns().dof_handler().get_triangulation();
       // As pressures.
@@ -47,112 +48,105 @@ namespace Debond
 
 
 
-    /// Throws EquilibriumError if a contact node has a normal that is not that
-    /// of its sides.
+    /// The law of a side with its bonds. Throws EquilibriumError if they vary
+    /// along it.
+    template <int dim>
+    PiecewiseEnergy
+    law_of_side(const std::array<dealii::Point<dim>, dim> &corners,
+                const dealii::types::boundary_id           id,
+                const Scene<dim>                          &scene)
+    {
+      const PiecewiseEnergy &law = scene.law().branches();
+      if (!scene.adhesion().points().has_field())
+        return law;
+      std::optional<BondScale> first;
+      for (const auto &[barycentric, weight] : side_rule<dim>())
+        {
+          dealii::Point<dim> position;
+          for (unsigned int k = 0; k < dim; ++k)
+            position += barycentric[k] * corners[k];
+          const BondScale here =
+            scene.adhesion().points().bonds_at(position, id);
+          first             = first.value_or(here);
+          const auto differ = [](const double a, const double b) {
+            return std::abs(a - b) > Tolerance::linear_data * std::abs(b);
+          };
+          if (differ(here.energy, first->energy) ||
+              differ(here.stretch, first->stretch))
+            throw EquilibriumError("bonds that vary along a side are not done");
+        }
+      return law.scaled(first->energy, first->stretch);
+    }
+
+
+
+    /// Throws EquilibriumError if the gap of a face is not linear, with the
+    /// values of @p gap at its vertices (zero for null); @p largest: that of
+    /// the boundary.
     template <int dim>
     void
-    check_normals(const ContactBoundary<dim> &boundary)
+    check_gap(const ContactBoundary<dim>                &boundary,
+              const typename ContactBoundary<dim>::Face &face,
+              const dealii::Function<dim> *const         gap,
+              const double                               largest)
     {
-      for (const auto &face : boundary.faces)
+      std::vector<double> values, linear;
+      for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+        {
+          values.push_back(face.is_held(k) ?
+                             (boundary.held_vertices.empty() ?
+                                0. :
+                                boundary.held_vertices[face.held_at(k)].gap) :
+                             boundary.nodes[face.node(k)].gap);
+          if (k >= dim)
+            {
+              const auto &[a, b] = simplex_edges[k - dim];
+              linear.push_back(0.5 * (values[a] + values[b]));
+            }
+          else
+            linear.push_back(gap == nullptr ? 0. :
+                                              gap->value(face.vertices[k]));
+        }
+      for (unsigned int k = 0; k < values.size(); ++k)
+        if (std::abs(values[k] - linear[k]) > Tolerance::linear_data * largest)
+          throw EquilibriumError("a gap that is not linear on each side, or "
+                                 "differs between sides, is not done");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  check_certifiable(const Scene<dim> &scene)
+  {
+    check_supports(scene.conditions(), scene.supports());
+    const ContactBoundary<dim> &boundary = scene.contact_boundary();
+    double                      largest  = 0.;
+    for (const auto &node : boundary.nodes)
+      largest = std::max(largest, std::abs(node.gap));
+    for (const auto &face : boundary.faces)
+      {
         for (const unsigned int node : face.nodes)
           if (node < boundary.nodes.size() &&
               (boundary.nodes[node].normal - face.normal).norm() >
                 Tolerance::same_normal)
             throw EquilibriumError("a contact boundary with corners that are "
                                    "rounded by a mean normal is not done");
-    }
+        const auto gap = scene.supports().gaps.find(face.id);
+        check_gap(boundary,
+                  face,
+                  gap == scene.supports().gaps.end() ? nullptr :
+                                                       gap->second.value.get(),
+                  largest);
+        law_of_side(face.vertices, face.id, scene);
+      }
+  }
 
 
 
-    /// The law of each side with its bonds, which must not vary along it.
-    template <int dim>
-    std::vector<PiecewiseEnergy>
-    laws_of_sides(const std::vector<SideOf<dim>> &sides,
-                  const PiecewiseEnergy          &law,
-                  const AdhesionIntegral<dim>    &bonds)
-    {
-      std::vector<PiecewiseEnergy> laws;
-      for (const SideOf<dim> &side : sides)
-        {
-          if (!bonds.points().has_field())
-            {
-              laws.push_back(law);
-              continue;
-            }
-          std::vector<BondScale> scales;
-          for (const auto &[barycentric, weight] : side_rule<dim>())
-            {
-              dealii::Point<dim> position;
-              for (unsigned int k = 0; k < dim; ++k)
-                position += barycentric[k] * side.corners[k];
-              scales.push_back(bonds.points().bonds_at(position, side.id));
-              const auto differ = [](const double a, const double b) {
-                return std::abs(a - b) > Tolerance::linear_data * std::abs(b);
-              };
-              if (differ(scales.back().energy, scales[0].energy) ||
-                  differ(scales.back().stretch, scales[0].stretch))
-                throw EquilibriumError("bonds that vary along a side are not "
-                                       "done");
-            }
-          const auto &[energy, stretch] = scales[0];
-          laws.push_back(law.scaled(energy, stretch));
-        }
-      return laws;
-    }
-
-
-
-    /// Throws EquilibriumError if the gap of @p boundary is not linear on its
-    /// faces as that of the sides is.
-    template <int dim>
-    void
-    check_gaps(const ContactBoundary<dim>     &boundary,
-               const std::vector<SideOf<dim>> &sides)
-    {
-      std::map<std::vector<double>, double> gaps; ///< by corner and normal
-      const auto key = [](const dealii::Point<dim>     &position,
-                          const dealii::Tensor<1, dim> &normal) {
-        std::vector<double> result;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            result.push_back(position[d]);
-            result.push_back(std::round(1e6 * normal[d]));
-          }
-        return result;
-      };
-      double largest = 0.;
-      for (const SideOf<dim> &side : sides)
-        for (unsigned int k = 0; k < dim; ++k)
-          {
-            gaps[key(side.corners[k], side.normal)] = side.gap[k];
-            largest = std::max(largest, std::abs(side.gap[k]));
-          }
-      const auto check = [&](const double gap, const double linear) {
-        if (std::abs(gap - linear) > Tolerance::linear_data * largest)
-          throw EquilibriumError("a gap that is not linear on each side, or "
-                                 "differs between sides, is not done");
-      };
-      for (const auto &face : boundary.faces)
-        {
-          const auto gap_of = [&](const unsigned int k) {
-            return face.is_held(k) ?
-                     (boundary.held_vertices.empty() ?
-                        0. :
-                        boundary.held_vertices[face.held_at(k)].gap) :
-                     boundary.nodes[face.node(k)].gap;
-          };
-          for (unsigned int k = 0; k < dim; ++k)
-            check(gap_of(k), gaps.at(key(face.vertices[k], face.normal)));
-          for (unsigned int k = dim; k < boundary.n_face_nodes(); ++k)
-            {
-              const auto &[a, b] = simplex_edges[k - dim];
-              check(gap_of(k), 0.5 * (gap_of(a) + gap_of(b)));
-            }
-        }
-    }
-
-
-
+  namespace
+  {
     std::vector<CertifiedLength>
     certified_lengths(const std::vector<CertifiedSide>   &sides,
                       const std::vector<PiecewiseEnergy> &laws,
@@ -197,7 +191,7 @@ namespace Debond
     ///     h(q) = inf_{s <= 0} piece(s) + q s
     ///          = constant - (q + slope)_+^2 / (2 curvature).
     /// Without a curvature q has to be below -slope but for @p rounding; throws
-    /// EquilibriumError if it is not, as h is minus infinity then.
+    /// FixedStateError if it is not, as h is minus infinity then.
     template <int dim>
     double
     conjugate_integral(const PiecewiseEnergy::Piece  &piece,
@@ -213,7 +207,7 @@ namespace Debond
         return constant -
                measure * mean_positive_square(pull) / (2. * piece.curvature);
       if (*std::max_element(pull.begin(), pull.end()) > rounding)
-        throw EquilibriumError("the tractions pull where no bond holds");
+        throw FixedStateError("the tractions pull where no bond holds");
       return constant;
     }
 
@@ -268,46 +262,34 @@ namespace Debond
 
 
 
-    /// The least J with given branches.
+    /// The work-conjugates of the tractions at the corners, corner by corner,
+    /// of the least J with these pieces of the law, for S and g of the
+    /// equilibrated stresses. They are <= 0 if the displacement is, as linear
+    /// tractions <= 0 see it. Throws FixedStateError if they are not found.
     template <int dim>
-    void
-    bound_fixed_state(const EquilibriumProblem<dim>      &equilibrium,
-                      const std::vector<PiecewiseEnergy> &laws,
-                      const ElasticFields<dim>           &fields,
-                      const DofVector                    &displacement,
-                      Certificate                        &certificate)
+    Eigen::VectorXd
+    fixed_state_displacement(const std::vector<SideOf<dim>>            &sides,
+                             const std::vector<Trace<dim>>             &traces,
+                             const std::vector<PiecewiseEnergy::Piece> &pieces,
+                             Eigen::MatrixXd                            M,
+                             Eigen::VectorXd                            r)
     {
-      const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
-      const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
-      const auto             condensed = equilibrium.condense();
-      const Eigen::MatrixXd  S         = condensed->schur_complement();
-      const Eigen::VectorXd &g         = condensed->load();
-
-      // The unknowns are <= 0 if the displacement is, as linear tractions <= 0
-      // see it. Their work-conjugates are the tractions at the corners times a
-      // part of the side.
-      std::vector<PiecewiseEnergy::Piece> pieces;
-      Eigen::VectorXd                     u_nu(dim * n);
-      Eigen::MatrixXd                     M = S;
-      Eigen::VectorXd                     r = g;
+      const Eigen::Index n = static_cast<Eigen::Index>(sides.size());
+      Eigen::VectorXd    u_nu(dim * n);
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
-          pieces.push_back(laws[i][laws[i].index(trace.mean())]);
           // The integral of the square of the linear function with these means.
-          const double weight =
-            sides[i].measure * pieces.back().curvature / dim;
+          const double weight = sides[i].measure * pieces[i].curvature / dim;
           for (Eigen::Index k = 0; k < dim; ++k)
             {
               u_nu(k * n + i) =
-                trace.integral([k](const std::array<double, dim> &barycentric,
-                                   const double                   value) {
-                  return dim * barycentric[k] * value;
-                }) /
+                traces[i].integral(
+                  [k](const std::array<double, dim> &lambda,
+                      const double value) { return dim * lambda[k] * value; }) /
                 sides[i].measure;
               for (Eigen::Index l = 0; l < dim; ++l)
                 M(k * n + i, l * n + i) += weight * (k == l ? dim : -1.);
-              r(k * n + i) -= sides[i].measure * pieces.back().slope / dim;
+              r(k * n + i) -= sides[i].measure * pieces[i].slope / dim;
             }
         }
       // Where the displacement is in contact, and what is wrong there is found.
@@ -319,10 +301,38 @@ namespace Debond
         solve_bound_qp(M, r, Eigen::VectorXd::Zero(dim * n), active);
       if (minimum.status != SolverStatus::success &&
           minimum.status != SolverStatus::stagnated)
-        throw EquilibriumError("the tractions of the contact boundary were not "
-                               "found (" +
-                               to_string(minimum.status) + ")");
-      const Eigen::VectorXd &x = minimum.x;
+        throw FixedStateError("the tractions of the contact boundary were not "
+                              "found (" +
+                              to_string(minimum.status) + ")");
+      return minimum.x;
+    }
+
+
+
+    /// Bounds the least J with the bonds' branches as they are. Throws
+    /// FixedStateError if it has no bound.
+    template <int dim>
+    void
+    bound_fixed_state(const EquilibriumProblem<dim>      &equilibrium,
+                      const std::vector<PiecewiseEnergy> &laws,
+                      const ElasticFields<dim>           &fields,
+                      const DofVector                    &displacement,
+                      Certificate                        &certificate)
+    {
+      const std::vector<SideOf<dim>> &sides = equilibrium.mesh.contact_sides;
+      const Eigen::Index      n = static_cast<Eigen::Index>(sides.size());
+      const auto              condensed = equilibrium.condense();
+      const Eigen::MatrixXd   S         = condensed->schur_complement();
+      const Eigen::VectorXd  &g         = condensed->load();
+      std::vector<Trace<dim>> traces;
+      std::vector<PiecewiseEnergy::Piece> pieces;
+      for (Eigen::Index i = 0; i < n; ++i)
+        {
+          traces.emplace_back(sides[i], fields.unknowns(), displacement);
+          pieces.push_back(laws[i][laws[i].index(traces[i].mean())]);
+        }
+      const Eigen::VectorXd x =
+        fixed_state_displacement<dim>(sides, traces, pieces, S, g);
 
       // Of the stresses that x leads to.
       const Eigen::VectorXd moments    = S * x - g;
@@ -360,8 +370,7 @@ namespace Debond
                                     sides[i].measure,
                                     tractions,
                                     Tolerance::certificate * largest_traction);
-          const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
-          const double     of_bonds = trace.integral(
+          const double of_bonds = traces[i].integral(
             [&](const auto &, const double s) { return pieces[i].value(s); });
           // Nothing may pull there: what rounding pulls costs this much at the
           // displacement, and is reserved four times.
@@ -371,16 +380,16 @@ namespace Debond
               std::max(*std::max_element(tractions.begin(), tractions.end()) +
                          pieces[i].slope,
                        0.) *
-              sides[i].measure * std::abs(trace.mean());
+              sides[i].measure * std::abs(traces[i].mean());
           certificate.lower += bonds;
           certificate.upper += of_bonds;
           certificate.gaps[sides[i].cell->active_cell_index()] +=
             of_bonds - bonds +
-            trace.integral([&](const auto &barycentric, const double s) {
-              double traction = 0.;
-              for (unsigned int k = 0; k < dim; ++k)
-                traction += barycentric[k] * tractions[k];
-              return traction * s;
+            traces[i].integral([&](const auto &lambda, const double s) {
+              return s * std::inner_product(lambda.begin(),
+                                            lambda.end(),
+                                            tractions.begin(),
+                                            0.);
             });
         }
     }
@@ -430,11 +439,8 @@ namespace Debond
                 CertifiedMinimum::fixed_state)
     , equilibrium(equilibrium_problem(*scene))
   {
-    check_normals(scene->contact_boundary());
-    check_gaps<dim>(scene->contact_boundary(), equilibrium.contact_sides());
-    laws = laws_of_sides<dim>(equilibrium.contact_sides(),
-                              scene->law().branches(),
-                              scene->adhesion());
+    for (const SideOf<dim> &side : equilibrium.mesh.contact_sides)
+      laws.push_back(law_of_side(side.corners, side.id, *scene));
     if constexpr (dim == 2)
       if (minimum == CertifiedMinimum::global &&
           scene->law().branches().size() > 1)
@@ -468,11 +474,12 @@ namespace Debond
     const DofVector           displacement =
       scene->problem().unknowns().cartesian_displacement(u);
     Certificate certificate;
-    certificate.minimum         = minimum;
-    certificate.loads_are_exact = equilibrium.loads_are_exact();
-    certificate.n_unknowns      = equilibrium.n_unknowns();
-    certificate.n_sides =
-      static_cast<unsigned int>(equilibrium.contact_sides().size());
+    certificate.minimum               = minimum;
+    certificate.loads_are_exact       = equilibrium.mesh.loads_are_exact;
+    const std::vector<char> &is_fixed = equilibrium.mesh.is_fixed;
+    certificate.n_unknowns            = static_cast<unsigned int>(
+      std::count(is_fixed.begin(), is_fixed.end(), 0));
+    certificate.n_sides = static_cast<unsigned int>(laws.size());
     try
       {
         bound_fixed_state(equilibrium, laws, fields, displacement, certificate);
@@ -481,9 +488,9 @@ namespace Debond
         certificate.lower -= certificate.reserve + own;
         certificate.reserve += 2. * own;
       }
-    catch (const EquilibriumError &)
+    catch (const FixedStateError &)
       {
-        // Such as a body that only bonds hold.
+        // Such as of a body that only bonds hold.
         if (trace_constants.empty())
           throw;
         certificate.gaps.clear();
@@ -540,7 +547,7 @@ namespace Debond
     Eigen::VectorXd           means(certificate.n_sides);
     for (unsigned int i = 0; i < certificate.n_sides; ++i)
       {
-        const SideOf<2> &side = equilibrium.contact_sides()[i];
+        const SideOf<2> &side = equilibrium.mesh.contact_sides[i];
         side_energies.push_back(energies[side.cell->active_cell_index()]);
         means(i) =
           std::min(Trace<2>(side, fields.unknowns(), displacement).mean(), 0.);
@@ -558,7 +565,7 @@ namespace Debond
     if (!certificate.gaps.empty())
       for (unsigned int i = 0; i < bound.losses.size(); ++i)
         certificate
-          .gaps[equilibrium.contact_sides()[i].cell->active_cell_index()] +=
+          .gaps[equilibrium.mesh.contact_sides[i].cell->active_cell_index()] +=
           bound.losses[i];
     certificate.sides = std::move(bound.sides);
     certificate.lengths =
@@ -595,6 +602,8 @@ namespace Debond
 
 
 
+  template decltype(check_certifiable<2>) check_certifiable<2>;
+  template decltype(check_certifiable<3>) check_certifiable<3>;
   template class Certifier<2>;
   template class Certifier<3>;
 } // namespace Debond

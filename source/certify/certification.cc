@@ -18,27 +18,28 @@ namespace Debond
 {
   namespace
   {
-    /// Why @p work has no certificate, empty if it has one: rounding, memory
-    /// and data at points that the displacements do not need set limits to it.
+    /// Says why @p work has no certificate, nothing if it has one: rounding,
+    /// memory and data at points that the displacements do not need set limits
+    /// to it.
     template <typename Work>
     std::string
     no_certificate(const Work &work)
     {
-      const std::string begin = "There is no certificate: ";
+      std::string reason;
       try
         {
           work();
           return "";
         }
-      catch (const std::invalid_argument &error)
+      catch (const EntryError &error)
         {
-          return begin + error.what() + '.';
+          reason = error.what();
         }
       catch (const std::bad_alloc &)
         {
-          return begin +
-                 "there is not enough memory for the equilibrated stresses.";
+          reason = "there is not enough memory for the equilibrated stresses";
         }
+      return "There is no certificate: " + reason + '.';
     }
 
 
@@ -219,28 +220,41 @@ namespace Debond
   {
     if (kind == CertificateKind::none)
       return;
-    const auto refuse = [&](const std::string &reason) {
-      const std::string entry = "Certificate/Kind";
-      throw BadInput({scene->parameters().locations.at(entry) + ": " + entry +
-                      ": " + reason});
-    };
-    if (n_started_ranks() > 1)
-      refuse("several ranks have no certificate; run the scene on one rank");
-    // What is no fault of the scene certify() will say.
     try
       {
-        first = std::make_unique<const Certifier<dim>>(kind, scene);
+        if (n_started_ranks() > 1)
+          throw EquilibriumError("several ranks have no certificate; run the "
+                                 "scene on one rank");
+        check_certifiable(*scene);
       }
-    catch (const StressRoundingError &)
-      {}
     catch (const EquilibriumError &error)
       {
-        refuse(error.what());
+        throw BadInput({scene->parameters().locations.at(error.entry) + ": " +
+                        error.entry + ": " + error.what()});
       }
-    catch (const std::invalid_argument &)
-      {}
-    catch (const std::bad_alloc &)
-      {}
+    catch (const EntryError &)
+      {
+        // Data without a value at a point that displacements do not need:
+        // certify() will say it.
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Certification<dim>::make(const CertificateKind kind_of_this,
+                           const std::shared_ptr<const Scene<dim>> &scene,
+                           const SolveResult                       &result)
+  {
+    certificate = Certifier<dim>(kind_of_this, scene)
+                    .certify(result.u,
+                             proof,
+                             Interruption::by_signal(),
+                             latest_global ? &*latest_global : nullptr);
+    if (certificate->minimum == CertifiedMinimum::global)
+      latest_global = certificate;
+    certificate->include(result.functional);
   }
 
 
@@ -251,37 +265,26 @@ namespace Debond
                            const SolveResult                       &result,
                            const bool                               is_last)
   {
-    const auto certify = [&](const CertificateKind kind_of_this) {
-      certificate = Certifier<dim>(kind_of_this, scene)
-                      .certify(result.u,
-                               proof,
-                               Interruption::by_signal(),
-                               latest_global ? &*latest_global : nullptr);
-      if (certificate->minimum == CertifiedMinimum::global)
-        latest_global = certificate;
-      certificate->include(result.functional);
-    };
-    const auto is_global = [&]() {
-      return certificate && certificate->minimum == CertifiedMinimum::global;
-    };
     const std::string failure = no_certificate([&]() {
       if (!is_last)
         {
           certificate.reset();
-          // Such as a body that only bonds hold has none for their branches
-          // as they are.
           if (kind == CertificateKind::global)
             try
               {
-                certify(CertificateKind::fixed_state);
+                make(CertificateKind::fixed_state, scene, result);
               }
-            catch (const EquilibriumError &)
-              {}
+            catch (const FixedStateError &)
+              {
+                // The bound for bonds that may break need not have that.
+              }
         }
+      const bool is_global =
+        certificate && certificate->minimum == CertifiedMinimum::global;
       const bool is_wide = certificate && certificate->width() > target;
-      if (!certificate || (kind == CertificateKind::global && !is_global() &&
+      if (!certificate || (kind == CertificateKind::global && !is_global &&
                            (is_last || !is_wide)))
-        certify(kind);
+        make(kind, scene, result);
     });
     if (!failure.empty())
       {
@@ -317,19 +320,11 @@ namespace Debond
   {
     if (kind != CertificateKind::none && result.is_success() && !certificate)
       {
-        dealii::Timer timer;
-        const auto    certify = [&](const Certifier<dim> &certifier) {
-          certificate =
-            certifier.certify(result.solve.u, proof, Interruption::by_signal());
-          certificate->include(result.solve.functional);
+        dealii::Timer     timer;
+        const std::string failure = no_certificate([&]() {
+          make(kind, scene, result.solve);
           if (Interruption::by_signal().requested())
             result.solve.minimum.interrupted = true;
-        };
-        const std::string failure = no_certificate([&]() {
-          if (first == nullptr || !result.levels.empty())
-            certify(Certifier<dim>(kind, scene));
-          else
-            certify(*first);
         });
         if (!failure.empty())
           result.notes.push_back(failure);

@@ -144,6 +144,20 @@ namespace Debond
 
 
 
+    /// B in x = a + B y from the reference simplex.
+    template <int dim>
+    dealii::Tensor<2, dim>
+    map_from_reference(const std::array<dealii::Point<dim>, dim + 1> &corners)
+    {
+      dealii::Tensor<2, dim> B;
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int e = 0; e < dim; ++e)
+          B[e][d] = corners[d + 1][e] - corners[0][e];
+      return B;
+    }
+
+
+
     /// The same from the reference simplex: x = a + B y maps sigma to
     /// B sigma B', which keeps tractions continuous and the divergence zero.
     template <int dim>
@@ -156,10 +170,7 @@ namespace Debond
           unit[d + 1][d] = 1.;
         return divergence_free<dim>(unit);
       }();
-      dealii::Tensor<2, dim> B;
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int e = 0; e < dim; ++e)
-          B[e][d] = corners[d + 1][e] - corners[0][e];
+      const dealii::Tensor<2, dim> B = map_from_reference<dim>(corners);
       // Without it the basis would grow with the size of the cell.
       const double scale = B.norm_square();
       using Map          = Eigen::
@@ -224,10 +235,7 @@ namespace Debond
   template <int dim>
   SimplexGeometry<dim>::SimplexGeometry(const SimplexCorners<dim> &corners)
   {
-    dealii::Tensor<2, dim> B;
-    for (unsigned int d = 0; d < dim; ++d)
-      for (unsigned int e = 0; e < dim; ++e)
-        B[e][d] = corners[d + 1][e] - corners[0][e];
+    const dealii::Tensor<2, dim> B = map_from_reference<dim>(corners);
     measure = std::abs(determinant(B)) / (dim == 2 ? 2. : 6.);
     // The rows are the gradients of the barycentric coordinates.
     const dealii::Tensor<2, dim> inverse = invert(B);

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <set>
 
 namespace Debond
 {
@@ -18,15 +18,41 @@ namespace Debond
     template <int dim>
     using CellOf = typename dealii::Triangulation<dim>::cell_iterator;
 
-    /// Of a point of the reference simplex.
+    /// The points of a rule for quadratics in a cell, all of the same weight.
     template <int dim>
-    dealii::Point<dim>
-    point_of(const CellOf<dim> &cell, const dealii::Point<dim> &reference)
+    std::vector<dealii::Point<dim>>
+    points_in(const CellOf<dim> &cell)
     {
-      dealii::Point<dim> point = cell->vertex(0);
-      for (unsigned int d = 0; d < dim; ++d)
-        point += reference[d] * (cell->vertex(d + 1) - cell->vertex(0));
-      return point;
+      static const dealii::QGaussSimplex<dim> rule(2);
+      std::vector<dealii::Point<dim>>         points;
+      for (const dealii::Point<dim> &reference : rule.get_points())
+        {
+          points.push_back(cell->vertex(0));
+          for (unsigned int d = 0; d < dim; ++d)
+            points.back() +=
+              reference[d] * (cell->vertex(d + 1) - cell->vertex(0));
+        }
+      return points;
+    }
+
+
+
+    /// The value of a function. Throws EquilibriumError with the place if there
+    /// is none.
+    template <int dim>
+    double
+    value_at(const dealii::Function<dim> &function,
+             const dealii::Point<dim>    &point,
+             const unsigned int           component = 0)
+    {
+      try
+        {
+          return field_value(function, point, component);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw EquilibriumError(error.what());
+        }
     }
 
 
@@ -50,8 +76,27 @@ namespace Debond
       }();
       return faces[corner];
     }
-
   } // namespace
+
+
+
+  template <int dim>
+  void
+  check_supports(const BoundaryConditions &conditions,
+                 const Supports<dim>      &supports)
+  {
+    std::set<dealii::types::boundary_id> supported;
+    for (const PrescribedDisplacement<dim> &support : supports.displacements)
+      for (const dealii::types::boundary_id id : support.boundaries)
+        {
+          if (!supported.insert(id).second)
+            throw EquilibriumError("a piece of the boundary with several "
+                                   "supports is not done");
+          if (conditions.contact.count(id) > 0)
+            throw EquilibriumError("a contact boundary with supports is not "
+                                   "done");
+        }
+  }
 
 
 
@@ -62,21 +107,20 @@ namespace Debond
     const Supports<dim>              &supports,
     const Loads<dim>                 &given_loads,
     const std::vector<double>        &thermal_stresses)
-    : mesh(mesh)
+    : triangulation(mesh)
+    , is_fixed(unknowns_of_a_side * mesh.n_raw_faces(), 0)
+    , loads_on_sides(Eigen::VectorXd::Zero(is_fixed.size()))
+    , lifting(loads_on_sides)
     , all_directions(mesh.n_raw_faces(), dealii::unit_symmetric_tensor<dim>())
-    , fixed(unknowns_of_a_side * mesh.n_raw_faces(), 0)
-    , loads(Eigen::VectorXd::Zero(fixed.size()))
-    , prescribed(loads)
   {
     find_loads_of_cells(given_loads, thermal_stresses);
-    exact_loads = exact_loads && is_temperature_exact(given_loads);
     for (const auto &cell : mesh.active_cell_iterators())
       for (unsigned int corner = 0; corner <= dim; ++corner)
         {
           const auto face = cell->face(face_opposite<dim>(corner));
           if (!face->at_boundary())
             continue;
-          BoundarySide side = {
+          Side side = {
             cell,
             first_unknown(cell, corner),
             vertices_of_side(cell, corner),
@@ -106,59 +150,44 @@ namespace Debond
     const Loads<dim>          &given,
     const std::vector<double> &thermal_stresses)
   {
-    const dealii::QGaussSimplex<dim> rule(2);
-    for (const auto &cell : mesh.active_cell_iterators())
+    for (const auto &cell : triangulation.active_cell_iterators())
       {
-        loads_of_cells.push_back(Load::Zero());
-        Load &load = loads_of_cells.back();
+        const auto points = points_in<dim>(cell);
+        Load       load   = Load::Zero();
         if (!thermal_stresses.empty())
           load(dim) = thermal_stresses[cell->active_cell_index()];
-        if (!given.body_force)
-          continue;
-        // The mean, all points having the same weight, and how far the values
-        // are from it.
-        std::vector<dealii::Tensor<1, dim>> forces;
-        dealii::Tensor<1, dim>              mean;
-        double                              largest = 0.;
-        for (const auto &point : rule.get_points())
+        if (given.body_force)
           {
-            forces.push_back(given.force_at(point_of<dim>(cell, point)));
-            largest = std::max(largest, forces.back().norm());
-            mean += forces.back() / static_cast<double>(rule.size());
+            // The mean, all points having the same weight, and how far the
+            // values are from it.
+            std::vector<dealii::Tensor<1, dim>> forces;
+            dealii::Tensor<1, dim>              mean;
+            double                              largest = 0.;
+            for (const dealii::Point<dim> &point : points)
+              {
+                forces.push_back(given.force_at(point));
+                largest = std::max(largest, forces.back().norm());
+                mean += forces.back() / static_cast<double>(points.size());
+              }
+            for (unsigned int d = 0; d < dim; ++d)
+              load(d) = mean[d];
+            for (const dealii::Tensor<1, dim> &force : forces)
+              loads_are_exact &=
+                (force - mean).norm() <= Tolerance::linear_data * largest;
           }
-        for (unsigned int d = 0; d < dim; ++d)
-          load(d) = mean[d];
-        for (const dealii::Tensor<1, dim> &force : forces)
-          exact_loads = exact_loads && (force - mean).norm() <=
-                                         Tolerance::linear_data * largest;
-      }
-  }
-
-
-
-  template <int dim>
-  bool
-  EquilibriumMesh<dim>::is_temperature_exact(const Loads<dim> &given) const
-  {
-    if (!given.temperature_change)
-      return true;
-    const dealii::QGaussSimplex<dim> rule(2);
-    for (const auto &cell : mesh.active_cell_iterators())
-      {
-        double least   = std::numeric_limits<double>::infinity();
-        double largest = -least;
-        for (const auto &point : rule.get_points())
+        if (given.temperature_change)
           {
-            const double value = field_value(*given.temperature_change,
-                                             point_of<dim>(cell, point));
-            least              = std::min(least, value);
-            largest            = std::max(largest, value);
+            std::vector<double> values;
+            for (const dealii::Point<dim> &point : points)
+              values.push_back(value_at(*given.temperature_change, point));
+            const auto [least, largest] =
+              std::minmax_element(values.begin(), values.end());
+            loads_are_exact &= *largest - *least <=
+                               Tolerance::linear_data *
+                                 std::max(std::abs(*largest), std::abs(*least));
           }
-        if (largest - least > Tolerance::linear_data *
-                                std::max(std::abs(largest), std::abs(least)))
-          return false;
+        loads_of_cells.push_back(load);
       }
-    return true;
   }
 
 
@@ -231,7 +260,7 @@ namespace Debond
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::use_normal(const BoundarySide &side)
+  EquilibriumMesh<dim>::use_normal(const Side &side)
   {
     all_directions[side.first_unknown / unknowns_of_a_side] =
       contact_frame<dim>({side.normal});
@@ -241,18 +270,17 @@ namespace Debond
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::fix(const BoundarySide &side,
-                            const unsigned int  direction)
+  EquilibriumMesh<dim>::fix(const Side &side, const unsigned int direction)
   {
     for (unsigned int k = 0; k < dim; ++k)
-      fix(side.first_unknown + dim * k + direction);
+      is_fixed[side.first_unknown + dim * k + direction] = 1;
   }
 
 
 
   template <int dim>
   std::array<double, dim>
-  EquilibriumMesh<dim>::prescribe(const BoundarySide          &side,
+  EquilibriumMesh<dim>::prescribe(const Side                  &side,
                                   const unsigned int           direction,
                                   const dealii::Function<dim> &function,
                                   const unsigned int           component)
@@ -261,7 +289,7 @@ namespace Debond
     double                  largest = 0., sum = 0.;
     for (unsigned int k = 0; k < dim; ++k)
       {
-        values[k] = field_value(function, side.corners[k], component);
+        values[k] = value_at(function, side.corners[k], component);
         largest   = std::max(largest, std::abs(values[k]));
         sum += values[k];
       }
@@ -271,14 +299,13 @@ namespace Debond
         {
           const dealii::Point<dim> middle(0.5 *
                                           (side.corners[k] + side.corners[l]));
-          exact_loads =
-            exact_loads && std::abs(field_value(function, middle, component) -
-                                    0.5 * (values[k] + values[l])) <=
+          loads_are_exact &= std::abs(value_at(function, middle, component) -
+                                      0.5 * (values[k] + values[l])) <=
                              Tolerance::linear_data * largest;
         }
     // dim times the mean of lambda_k lambda_l is (1 + delta_kl) / (dim + 1).
     for (unsigned int k = 0; k < dim; ++k)
-      prescribed(side.first_unknown + dim * k + direction) =
+      lifting(side.first_unknown + dim * k + direction) =
         (sum + values[k]) / (dim + 1.);
     return values;
   }
@@ -287,34 +314,26 @@ namespace Debond
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::set_supports(const BoundarySide       &side,
+  EquilibriumMesh<dim>::set_supports(const Side               &side,
                                      const BoundaryConditions &conditions,
                                      const Supports<dim>      &supports)
   {
-    bool is_supported = false;
     for (const PrescribedDisplacement<dim> &support : supports.displacements)
       {
         if (support.boundaries.count(side.id) == 0)
           continue;
-        if (is_supported)
-          throw EquilibriumError("a piece of the boundary with several "
-                                 "supports is not done");
-        is_supported = true;
         if (support.is_roller)
           {
             use_normal(side);
             fix(side, 0);
           }
-        else
-          for (unsigned int d = 0; d < dim; ++d)
-            if (support.components[d])
-              {
-                fix(side, d);
-                prescribe(side, d, *support.values, d);
-              }
+        for (unsigned int d = 0; d < dim; ++d)
+          if (support.components[d])
+            {
+              fix(side, d);
+              prescribe(side, d, *support.values, d);
+            }
       }
-    if (is_supported && conditions.contact.count(side.id) > 0)
-      throw EquilibriumError("a contact boundary with supports is not done");
     if (conditions.clamped.count(side.id) > 0)
       for (unsigned int d = 0; d < dim; ++d)
         fix(side, d);
@@ -324,7 +343,7 @@ namespace Debond
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::set_contact(const BoundarySide       &side,
+  EquilibriumMesh<dim>::set_contact(Side                     &side,
                                     const BoundaryConditions &conditions,
                                     const Supports<dim>      &supports)
   {
@@ -332,28 +351,17 @@ namespace Debond
     if (conditions.fixes_tangential(side.id))
       for (unsigned int d = 1; d < dim; ++d)
         fix(side, d);
-    ContactSide contact = {side.corners,
-                           side.vertices,
-                           side.normal,
-                           side.measure,
-                           side.cell,
-                           side.id,
-                           {},
-                           {}};
     if (const auto gap = supports.gaps.find(side.id);
         gap != supports.gaps.end())
-      contact.gap = prescribe(side, 0, *gap->second.value, 0);
-    for (unsigned int k = 0; k < dim; ++k)
-      contact.unknowns[k] = side.first_unknown + dim * k;
-    sides_in_contact.push_back(contact);
+      side.gap = prescribe(side, 0, *gap->second.value, 0);
+    contact_sides.push_back(side);
   }
 
 
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::set_traction(const BoundarySide &side,
-                                     const Loads<dim>   &given)
+  EquilibriumMesh<dim>::set_traction(const Side &side, const Loads<dim> &given)
   {
     const SideTraction<dim> traction = side_traction<dim>(
       [&](const dealii::Point<dim> &point) {
@@ -362,30 +370,23 @@ namespace Debond
       side.corners);
     if (traction.rest > 0.)
       {
-        exact_loads = false;
-        all_rests.push_back({side.cell,
-                             side.measure * traction.rest,
-                             side.diameter,
-                             dim * side.cell->measure() / side.measure});
+        loads_are_exact = false;
+        load_rests.push_back({side.cell,
+                              side.measure * traction.rest,
+                              side.diameter,
+                              dim * side.cell->measure() / side.measure});
       }
     for (unsigned int k = 0; k < dim; ++k)
       for (unsigned int d = 0; d < dim; ++d)
-        loads(side.first_unknown + dim * k + d) +=
+        loads_on_sides(side.first_unknown + dim * k + d) +=
           side.measure / dim *
           (traction.at_corners[k] * directions(side.first_unknown)[d]);
   }
 
 
 
-  template <int dim>
-  unsigned int
-  EquilibriumMesh<dim>::n_free_unknowns() const
-  {
-    return static_cast<unsigned int>(std::count(fixed.begin(), fixed.end(), 0));
-  }
-
-
-
-  template class EquilibriumMesh<2>;
-  template class EquilibriumMesh<3>;
+  template decltype(check_supports<2>) check_supports<2>;
+  template decltype(check_supports<3>) check_supports<3>;
+  template struct EquilibriumMesh<2>;
+  template struct EquilibriumMesh<3>;
 } // namespace Debond

@@ -160,7 +160,7 @@ namespace Debond
     // The last ones that were new.
     constexpr unsigned int most_known = 64;
     std::deque<Known>      known;
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
+    for (const auto &cell : mesh.triangulation.active_cell_iterators())
       {
         const SimplexCorners<dim> corners  = corners_of<dim>(cell);
         const Material           &material = materials(cell->material_id());
@@ -189,8 +189,8 @@ namespace Debond
   std::unique_ptr<Condensation>
   EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
   {
-    const auto             cells = mesh.triangulation().active_cell_iterators();
-    const Eigen::VectorXd &loads = mesh.loads_on_sides();
+    const auto             cells = mesh.triangulation.active_cell_iterators();
+    const Eigen::VectorXd &loads = mesh.loads_on_sides;
     DofVector              f(static_cast<unsigned int>(loads.size()));
     dealii::DynamicSparsityPattern pattern(f.size());
     std::copy(loads.begin(), loads.end(), f.begin());
@@ -205,14 +205,14 @@ namespace Debond
 
     // What is prescribed is a lifting: its energy is a constant, its forces are
     // a load.
-    const Eigen::VectorXd       &lifting = mesh.lifting();
+    const Eigen::VectorXd       &lifting = mesh.lifting;
     dealii::SparseMatrix<double> A(sparsity);
     double                       constant = -loads.dot(lifting);
     for (const auto &cell : cells)
       {
         const unsigned int    number   = cell->active_cell_index();
         const Element        &element  = *elements[number];
-        const auto           &load     = mesh.load(number);
+        const auto           &load     = mesh.loads_of_cells[number];
         const auto            unknowns = mesh.unknowns_of(cell);
         const double          weight   = weights.empty() ? 1. : weights[number];
         const Eigen::MatrixXd R        = mesh.rotation(cell);
@@ -233,15 +233,15 @@ namespace Debond
 
     std::vector<unsigned int> kept;
     for (unsigned int k = 0; k < dim; ++k)
-      for (const ContactSide &side : mesh.contact_sides())
-        kept.push_back(side.unknowns[k]);
+      for (const auto &side : mesh.contact_sides)
+        kept.push_back(side.unknown(k));
     try
       {
         return std::make_unique<Condensation>(
           A,
           f,
           kept,
-          [this](const unsigned int i) { return mesh.is_fixed(i); },
+          [this](const unsigned int i) { return mesh.is_fixed[i] != 0; },
           constant,
           /*is_semidefinite=*/true);
       }
@@ -262,14 +262,14 @@ namespace Debond
   EquilibriumProblem<dim>::stresses(const DofVector &unknowns) const
   {
     std::vector<Eigen::VectorXd> result;
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
+    for (const auto &cell : mesh.triangulation.active_cell_iterators())
       {
         const unsigned int number = cell->active_cell_index();
         const auto         own    = mesh.unknowns_of(cell);
         result.push_back(elements[number]->stress(
           mesh.rotation(cell) *
-            (of_cell(unknowns, own) + Eigen::VectorXd(mesh.lifting()(own))),
-          mesh.load(number)));
+            (of_cell(unknowns, own) + Eigen::VectorXd(mesh.lifting(own))),
+          mesh.loads_of_cells[number]));
       }
     return result;
   }
@@ -286,13 +286,13 @@ namespace Debond
                                1.,
                                strain_rule<dim>(fields.unknowns().degree()));
     const auto            &values = stresses.values();
-    const Eigen::VectorXd &loads  = mesh.loads_on_sides();
+    const Eigen::VectorXd &loads  = mesh.loads_on_sides;
     double                 sum    = 0.;
     for (const auto &cell :
          fields.unknowns().dof_handler().active_cell_iterators())
       {
         stresses.reinit(cell);
-        const auto &load = mesh.load(cell->active_cell_index());
+        const auto &load = mesh.loads_of_cells[cell->active_cell_index()];
         for (const unsigned int q : values.quadrature_point_indices())
           {
             const dealii::SymmetricTensor<2, dim> epsilon =
@@ -329,11 +329,11 @@ namespace Debond
   EquilibriumProblem<dim>::load_rests(const ElasticFields<dim> &fields,
                                       const DofVector          &u) const
   {
-    if (mesh.load_rests().empty())
+    if (mesh.load_rests.empty())
       return {};
     const std::vector<double> energies = strain_energies(fields, u);
     std::vector<double>       result(energies.size(), 0.);
-    for (const auto &rest : mesh.load_rests())
+    for (const auto &rest : mesh.load_rests)
       {
         // Lambda of a rectangle, see doc/reference/certificate.md, with the
         // least of epsilon : E(epsilon).
@@ -375,7 +375,7 @@ namespace Debond
         of_u.reinit(cell);
         const unsigned int number     = cell->active_cell_index();
         Eigen::VectorXd    difference = stresses[number];
-        add_pressure<dim>(mesh.load(number)(dim), difference);
+        add_pressure<dim>(mesh.loads_of_cells[number](dim), difference);
         for (unsigned int part = 0; part <= dim; ++part)
           for (unsigned int corner = 0; corner <= dim; ++corner)
             {
@@ -403,13 +403,13 @@ namespace Debond
                                        const std::vector<double> &weights) const
   {
     const DofVector        unknowns = condensed.expand(kept);
-    const Eigen::VectorXd &lifting  = mesh.lifting();
-    double                 energy   = mesh.loads_on_sides().dot(lifting);
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
+    const Eigen::VectorXd &lifting  = mesh.lifting;
+    double                 energy   = mesh.loads_on_sides.dot(lifting);
+    for (const auto &cell : mesh.triangulation.active_cell_iterators())
       {
         const unsigned int    number  = cell->active_cell_index();
         const Element        &element = *elements[number];
-        const auto           &load    = mesh.load(number);
+        const auto           &load    = mesh.loads_of_cells[number];
         const double          weight  = weights.empty() ? 1. : weights[number];
         const auto            own     = mesh.unknowns_of(cell);
         const Eigen::MatrixXd R       = mesh.rotation(cell);

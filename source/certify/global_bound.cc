@@ -16,7 +16,7 @@ namespace Debond
 {
   namespace
   {
-    using ContactSide = EquilibriumProblem<2>::ContactSide;
+    using ContactSide = EquilibriumMesh<2>::Side;
 
 
 
@@ -97,59 +97,6 @@ namespace Debond
 
 
 
-    /// The piece of the law on which all of the interval is, if it is one.
-    std::optional<unsigned int>
-    piece_of(const Interval &interval, const PiecewiseEnergy &law)
-    {
-      const unsigned int piece = law.index(interval.upper);
-      if (law.index(interval.lower) != piece)
-        return {};
-      return piece;
-    }
-
-
-
-    /// What is known of the displacements with J at most the upper number.
-    struct Known
-    {
-      std::vector<CertifiedSide> ranges;
-
-      double      lower    = -std::numeric_limits<double>::infinity(); ///< of J
-      double      rounding = 0.;
-      ProofStatus status   = ProofStatus::no_bound;
-      std::vector<double> losses; ///< where that bound is the least
-
-      /// The latest one, and its means and slopes where it is least.
-      std::shared_ptr<const MeanProblem> problem;
-      Eigen::VectorXd                    values;
-
-      Eigen::VectorXd
-      means() const
-      {
-        return values.head(ranges.size());
-      }
-
-      Eigen::VectorXd
-      slopes() const
-      {
-        return values.tail(ranges.size());
-      }
-    };
-
-
-
-    /// Whether saving what may be saved of what the sides lose would make the
-    /// interval narrower.
-    bool
-    losses_matter(const Known &known, const double upper)
-    {
-      const double loss =
-        std::accumulate(known.losses.begin(), known.losses.end(), 0.);
-      return part_of_losses * loss >= least_gain * (upper - known.lower);
-    }
-
-
-
     /// Raises the bound and makes the ranges narrower, in turn.
     class StagedBounds
     {
@@ -164,12 +111,16 @@ namespace Debond
         , upper(upper)
         , proof(proof)
         , interruption(interruption)
-      {}
+      {
+        for (const ContactSide &side : problems.contact_sides())
+          {
+            known.sides.emplace_back();
+            known.sides.back().ends = side.corners;
+          }
+      }
 
-      unsigned int nodes = 0; ///< of all bounds
-
-      void
-      run(Known &known);
+      GlobalBound
+      run();
 
     private:
       const MeanProblems             &problems;
@@ -178,30 +129,35 @@ namespace Debond
       const BranchAndBoundParameters &proof;
       const Interruption             &interruption;
 
+      /// What is known of the displacements with J at most the upper number.
+      GlobalBound known;
+
+      /// The latest one, and its means and slopes where it is least.
+      std::shared_ptr<const MeanProblem> problem;
+      Eigen::VectorXd                    values;
+
       /// Returns the bound.
       double
-      add_bound(const std::vector<double> &D,
-                const bool                 is_first,
-                Known                     &known);
+      add_bound(const std::vector<double> &D, const bool is_first);
 
       void
-      add_bound_for_ranges(const double least_shift, Known &known);
-
-      void
-      begin(Known &known);
+      begin();
 
       /// Makes the ranges narrower by the latest problem. If nothing was known
       /// it has all means: then quickly, as the next one has fewer.
       void
-      look(const bool is_quick, Known &known) const;
+      look(const bool is_quick);
+
+      /// Whether saving what may be saved of what the sides lose would make the
+      /// interval narrower.
+      bool
+      losses_matter() const;
     };
 
 
 
     double
-    StagedBounds::add_bound(const std::vector<double> &D,
-                            const bool                 is_first,
-                            Known                     &known)
+    StagedBounds::add_bound(const std::vector<double> &D, const bool is_first)
     {
       const double             interval   = std::isfinite(known.lower) ?
                                               upper - known.lower :
@@ -212,25 +168,24 @@ namespace Debond
       if (!is_first)
         parameters.maximum_nodes =
           std::min(parameters.maximum_nodes, n_later_nodes);
-      const auto problem = std::make_shared<const MeanProblem>(
-        problems.mean_problem(known.ranges, given_means, D));
+      problem = std::make_shared<const MeanProblem>(
+        problems.mean_problem(known.sides, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
                          {problem->S, problem->g, *problem->phi, interruption},
                          problem->kept_of(given_means));
-      nodes += bound.nodes;
+      known.nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?
           -std::numeric_limits<double>::infinity() :
           problem->constant + bound.lower - problem->rounding;
-      known.problem = problem;
-      known.values  = problem->all(bound.s);
+      values = problem->all(bound.s);
       if (lower > known.lower)
         {
           known.lower    = lower;
           known.rounding = problem->rounding;
           known.status   = bound.status;
-          known.losses   = problems.losses(*problem, known.values);
+          known.losses   = problems.losses(*problem, values);
         }
       return lower;
     }
@@ -238,27 +193,15 @@ namespace Debond
 
 
     void
-    StagedBounds::add_bound_for_ranges(const double least_shift, Known &known)
+    StagedBounds::look(const bool is_quick)
     {
-      add_bound(problems.shifts_for_ranges(
-                  known.ranges, known.means(), known.slopes(), least_shift),
-                false,
-                known);
+      shrink_ranges(*problem, upper, is_quick, interruption, known.sides);
     }
 
 
 
     void
-    StagedBounds::look(const bool is_quick, Known &known) const
-    {
-      shrink_ranges(
-        *known.problem, upper, is_quick, interruption, known.ranges);
-    }
-
-
-
-    void
-    StagedBounds::begin(Known &known)
+    StagedBounds::begin()
     {
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
@@ -267,45 +210,70 @@ namespace Debond
         {
           if (const double lower =
                 add_bound(problems.shifts_for_means(given_means, multiple),
-                          !std::isfinite(known.lower),
-                          known);
+                          !std::isfinite(known.lower));
               !best || lower > best_lower)
             {
-              best        = known.problem;
-              best_values = known.values;
+              best        = problem;
+              best_values = values;
               best_lower  = lower;
             }
           if (known.status == ProofStatus::proved)
             break;
         }
-      known.problem = best;
-      known.values  = best_values;
+      problem = best;
+      values  = best_values;
     }
 
 
 
-    void
-    StagedBounds::run(Known &known)
+    bool
+    StagedBounds::losses_matter() const
     {
-      begin(known);
+      const double loss =
+        std::accumulate(known.losses.begin(), known.losses.end(), 0.);
+      return part_of_losses * loss >= least_gain * (upper - known.lower);
+    }
+
+
+
+    GlobalBound
+    StagedBounds::run()
+    {
+      const std::size_t n = known.sides.size();
+      begin();
       unsigned int n_idle = 0;
       for (unsigned int stage = 0;
            stage < n_stages && !interruption.requested();
            ++stage)
         {
-          look(stage == 0, known);
+          look(stage == 0);
           const double before = upper - known.lower;
-          add_bound_for_ranges(least_shifts[stage % least_shifts.size()],
-                               known);
+          add_bound(problems.shifts_for_ranges(
+                      known.sides,
+                      values.head(n),
+                      values.tail(n),
+                      least_shifts[stage % least_shifts.size()]),
+                    false);
           n_idle =
             upper - known.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
           // The first one has only the ranges of a problem that knew nothing.
-          if (n_idle == n_idle_stages ||
-              (stage > 0 && !losses_matter(known, upper)))
+          if (n_idle == n_idle_stages || (stage > 0 && !losses_matter()))
             break;
         }
       if (!interruption.requested())
-        look(false, known);
+        look(false);
+
+      known.lower = std::min(known.lower, upper);
+      // The piece of the law on which all of the range is, if it is one.
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          const PiecewiseEnergy &law    = problems.laws_of_sides()[i];
+          const Interval         linear = known.sides[i].linear();
+          if (const unsigned int piece = law.index(linear.upper);
+              law.index(linear.lower) == piece)
+            known.sides[i].piece = piece;
+        }
+      return std::move(known);
     }
   } // namespace
 
@@ -325,7 +293,7 @@ namespace Debond
     };
     std::vector<Known>  known;
     std::vector<double> constants;
-    for (const ContactSide &side : equilibrium.contact_sides())
+    for (const ContactSide &side : equilibrium.mesh.contact_sides)
       {
         const TriangleAboveSide own = triangle(side);
         const Material          material =
@@ -358,25 +326,6 @@ namespace Debond
                const BranchAndBoundParameters &proof,
                const Interruption             &interruption)
   {
-    StagedBounds bounds(problems, means, upper, proof, interruption);
-    Known        last;
-    for (const ContactSide &side : problems.contact_sides())
-      {
-        last.ranges.emplace_back();
-        last.ranges.back().ends = side.corners;
-      }
-    bounds.run(last);
-
-    GlobalBound result;
-    result.nodes    = bounds.nodes;
-    result.lower    = std::min(last.lower, upper);
-    result.rounding = last.rounding;
-    result.status   = last.status;
-    result.losses   = last.losses;
-    result.sides    = std::move(last.ranges);
-    for (unsigned int i = 0; i < result.sides.size(); ++i)
-      result.sides[i].piece =
-        piece_of(result.sides[i].linear(), problems.laws_of_sides()[i]);
-    return result;
+    return StagedBounds(problems, means, upper, proof, interruption).run();
   }
 } // namespace Debond

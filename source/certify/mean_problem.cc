@@ -110,11 +110,11 @@ namespace Debond
     , trace_constants(trace_constants)
     , energies(energies)
     , laws(laws)
-    , sides(equilibrium.contact_sides())
+    , sides(equilibrium.mesh.contact_sides)
     , n(static_cast<unsigned int>(sides.size()))
-    , sharers(equilibrium.n_cells(), 0)
+    , sharers(equilibrium.mesh.triangulation.n_active_cells(), 0)
   {
-    for (const EquilibriumProblem<2>::ContactSide &side : sides)
+    for (const EquilibriumMesh<2>::Side &side : sides)
       ++sharers[side.cell->active_cell_index()];
   }
 
@@ -211,7 +211,7 @@ namespace Debond
                                  const Eigen::VectorXd            &means,
                                  const std::vector<double>        &D) const
   {
-    std::vector<double> weights(equilibrium.n_cells(), 1.);
+    std::vector<double> weights(sharers.size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
       weights[sides[i].cell->active_cell_index()] -= D[i] / trace_constants[i];
     std::unique_ptr<const Condensation> condensed;

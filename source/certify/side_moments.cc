@@ -11,6 +11,31 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// face_rule() with so many parts.
+    template <int dim>
+    SideRule<dim>
+    make_rule(const unsigned int n_parts)
+    {
+      const dealii::Quadrature<dim - 1> rule = face_rule<dim>(n_parts);
+      SideRule<dim>                     points;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        {
+          points.push_back({{}, (dim - 1.) * rule.weight(q)});
+          points.back().first[0] = 1.;
+          for (unsigned int k = 1; k < dim; ++k)
+            {
+              points.back().first[k] = rule.point(q)[k - 1];
+              points.back().first[0] -= rule.point(q)[k - 1];
+            }
+        }
+      return points;
+    }
+  } // namespace
+
+
+
   template <int dim>
   SideTraction<dim>
   side_traction(
@@ -18,38 +43,31 @@ namespace Debond
                                               &traction,
     const std::array<dealii::Point<dim>, dim> &corners)
   {
-    static const dealii::Quadrature<dim - 1> rule =
-      face_rule<dim>(parts_of_a_face<dim>);
-    std::vector<std::array<double, dim>> barycentric(rule.size());
-    std::vector<dealii::Tensor<1, dim>>  values(rule.size());
+    static const SideRule<dim> rule = make_rule<dim>(parts_of_a_face<dim>);
 
     // At the corners the linear function with the same moments.
     std::array<dealii::Tensor<1, dim>, dim> linear;
-    for (unsigned int q = 0; q < rule.size(); ++q)
+    std::vector<dealii::Tensor<1, dim>>     values;
+    double                                  largest = 0., square = 0.;
+    for (const auto &[barycentric, weight] : rule)
       {
         dealii::Point<dim> place = corners[0];
-        barycentric[q][0]        = 1.;
         for (unsigned int k = 1; k < dim; ++k)
-          {
-            barycentric[q][k] = rule.point(q)[k - 1];
-            barycentric[q][0] -= barycentric[q][k];
-            place += barycentric[q][k] * (corners[k] - corners[0]);
-          }
-        values[q] = traction(place);
+          place += barycentric[k] * (corners[k] - corners[0]);
+        values.push_back(traction(place));
+        largest = std::max(largest, values.back().norm());
         for (unsigned int k = 0; k < dim; ++k)
           for (unsigned int l = 0; l < dim; ++l)
-            linear[l] += (dim - 1.) * rule.weight(q) * dim * barycentric[q][k] *
-                         ((k == l ? dim + 1. : 0.) - 1.) * values[q];
+            linear[l] += weight * dim * barycentric[k] *
+                         ((k == l ? dim + 1. : 0.) - 1.) * values.back();
       }
-
-    double largest = 0., square = 0.;
-    for (unsigned int q = 0; q < rule.size(); ++q)
+    auto value = values.begin();
+    for (const auto &[barycentric, weight] : rule)
       {
-        dealii::Tensor<1, dim> rest = values[q];
+        dealii::Tensor<1, dim> rest = *value++;
         for (unsigned int k = 0; k < dim; ++k)
-          rest -= barycentric[q][k] * linear[k];
-        largest = std::max(largest, values[q].norm());
-        square += (dim - 1.) * rule.weight(q) * rest.norm_square();
+          rest -= barycentric[k] * linear[k];
+        square += weight * rest.norm_square();
       }
     if (std::sqrt(square) <= Tolerance::linear_data * largest)
       square = 0.;
@@ -98,25 +116,11 @@ namespace Debond
 
 
   template <int dim>
-  const std::vector<std::pair<std::array<double, dim>, double>> &
+  const SideRule<dim> &
   side_rule()
   {
-    static const auto result = [] {
-      const dealii::Quadrature<dim - 1> rule = face_rule<dim>(1);
-      std::vector<std::pair<std::array<double, dim>, double>> points;
-      for (unsigned int q = 0; q < rule.size(); ++q)
-        {
-          points.push_back({{}, (dim - 1.) * rule.weight(q)});
-          points.back().first[0] = 1.;
-          for (unsigned int k = 1; k < dim; ++k)
-            {
-              points.back().first[k] = rule.point(q)[k - 1];
-              points.back().first[0] -= rule.point(q)[k - 1];
-            }
-        }
-      return points;
-    }();
-    return result;
+    static const SideRule<dim> rule = make_rule<dim>(1);
+    return rule;
   }
 
 

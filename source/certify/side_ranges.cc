@@ -78,11 +78,9 @@ namespace Debond
                   radius * std::sqrt(std::max(variance, 0.));
                 return {centre - distance, centre + distance};
               };
-              ranges[i].mean = intersection(ranges[i].mean, range_at(0.));
-              for (const unsigned int end : {0, 1})
-                ranges[i].at_ends[end] =
-                  intersection(ranges[i].at_ends[end],
-                               range_at(end == 0 ? -1. : 1.));
+              ranges[i].combine(
+                intersection,
+                {{}, range_at(0.), {{range_at(-1.), range_at(1.)}}, {}});
             }
         }
       return ranges;
@@ -146,13 +144,11 @@ namespace Debond
       }
     else
       return;
-    const Interval empty    = {1., -1.};
-    CertifiedSide  no_range = {};
-    no_range.mean           = empty;
-    no_range.at_ends        = {{empty, empty}};
-    const unsigned int n_nodes =
+    const Interval             empty = {1., -1.};
+    std::vector<CertifiedSide> hulls(ranges.size(),
+                                     {{}, empty, {{empty, empty}}, {}});
+    const unsigned int         n_nodes =
       is_quick ? n_quick_nodes_of_ranges : n_nodes_of_ranges;
-    std::vector<CertifiedSide> hulls(ranges.size(), no_range);
     for (unsigned int nodes = 0; !open.empty(); ++nodes)
       {
         if (interruption.requested())
@@ -170,12 +166,7 @@ namespace Debond
           {
             if (const auto own = ranges_of_node(problem, bound, node, best))
               for (unsigned int i = 0; i < ranges.size(); ++i)
-                {
-                  hulls[i].mean = hull(hulls[i].mean, (*own)[i].mean);
-                  for (unsigned int k = 0; k < 2; ++k)
-                    hulls[i].at_ends[k] =
-                      hull(hulls[i].at_ends[k], (*own)[i].at_ends[k]);
-                }
+                hulls[i].combine(hull, (*own)[i]);
             continue;
           }
         for (ProofNode &half : halves(node, result))
@@ -184,11 +175,6 @@ namespace Debond
     for (unsigned int i = 0; i < ranges.size(); ++i)
       // If there is none at all the ranges are left as they are.
       if (!hulls[i].mean.is_empty())
-        {
-          ranges[i].mean = intersection(ranges[i].mean, hulls[i].mean);
-          for (unsigned int k = 0; k < 2; ++k)
-            ranges[i].at_ends[k] =
-              intersection(ranges[i].at_ends[k], hulls[i].at_ends[k]);
-        }
+        ranges[i].combine(intersection, hulls[i]);
   }
 } // namespace Debond

@@ -55,7 +55,7 @@ namespace Debond
     /// side from 0 to 1, by means and slopes, without those that are linear on
     /// all of it: an orthonormal basis in L2 in columns.
     Eigen::MatrixXd
-    not_linear_traces(const std::vector<EquilibriumProblem<2>::ContactSide> &I)
+    not_linear_traces(const std::vector<EquilibriumMesh<2>::Side> &I)
     {
       const Eigen::Index n = static_cast<Eigen::Index>(I.size());
       Eigen::VectorXd    mass =
@@ -101,17 +101,17 @@ namespace Debond
     conditions.contact                       = {1};
     conditions.tangential_displacement_fixed = tangential_fixed;
     EquilibriumProblem<2> problem(mesh, conditions, {}, unit, Loads<2>());
-    const auto           &sides = problem.contact_sides();
+    const auto           &sides = problem.mesh.contact_sides;
     // A motion along I does not change the energy.
     if (!tangential_fixed)
-      problem.fix(sides[0].unknowns[0] + 1);
+      problem.mesh.is_fixed[sides[0].first_unknown + 1] = 1;
     const Eigen::MatrixXd basis = not_linear_traces(sides);
 
     // The parts of the stiffness that are tried: theta n has to be more than 1.
     double best = 0.;
     for (const double theta_n : {1.1, 1.5, 2.5, 5.})
       {
-        std::vector<double> weights(problem.n_cells(), 1.);
+        std::vector<double> weights(mesh.n_active_cells(), 1.);
         for (const auto &side : sides)
           weights[side.cell->active_cell_index()] =
             1. - std::min(theta_n / n, 0.9);

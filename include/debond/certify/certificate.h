@@ -101,16 +101,34 @@ namespace Debond
 
 
 
+  /// Bonds whose branches as they are have no least J that is known: those of a
+  /// body that only bonds hold, which others than these do not.
+  class FixedStateError : public EquilibriumError
+  {
+  public:
+    using EquilibriumError::EquilibriumError;
+  };
+
+
+
+  /// Throws EquilibriumError if there is no certificate for the data of the
+  /// scene: with several supports of one boundary or supports of a contact
+  /// boundary, bonds that vary along a side, a gap that is not linear there,
+  /// contact boundaries whose corners are rounded by a mean normal. Throws
+  /// EntryError where data have no value.
+  template <int dim>
+  void
+  check_certifiable(const Scene<dim> &scene);
+
+
+
   /// Certificates of displacements of a scene, for its whole load. In 3D of
   /// bonds' branches as they are alone.
   template <int dim>
   class Certifier
   {
   public:
-    /// Throws EquilibriumError if there is no certificate for the scene: with
-    /// bonds that vary along a side, quadratic displacements over a gap that is
-    /// not linear there, contact boundaries whose corners are rounded by a mean
-    /// normal.
+    /// Throws as check_certifiable() does.
     Certifier(const CertificateKind                    kind,
               const std::shared_ptr<const Scene<dim>> &scene);
 

@@ -62,12 +62,16 @@ namespace Debond
     files(const OutputParameters &output, const Scene<dim> &scene) const;
 
   private:
+    /// Makes the certificate of a result, to which the latest global one adds
+    /// what it knows. Throws as Certifier does.
+    void
+    make(const CertificateKind                    kind_of_this,
+         const std::shared_ptr<const Scene<dim>> &scene,
+         const SolveResult                       &result);
+
     const CertificateKind          kind;
     const double                   target;
     const BranchAndBoundParameters proof;
-
-    /// Of the first mesh; null if rounding does not allow it.
-    std::unique_ptr<const Certifier<dim>> first;
 
     std::optional<Certificate> certificate;
 

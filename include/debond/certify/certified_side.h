@@ -29,6 +29,17 @@ namespace Debond
        {-std::numeric_limits<double>::infinity(),
         std::numeric_limits<double>::infinity()}}};
 
+    /// Combines all ranges with those of another side, by hull() or
+    /// intersection().
+    template <typename Function>
+    void
+    combine(const Function &function, const CertifiedSide &other)
+    {
+      mean = function(mean, other.mean);
+      for (const unsigned int k : {0, 1})
+        at_ends[k] = function(at_ends[k], other.at_ends[k]);
+    }
+
     /// The piece of the law on which p is, if it is certain.
     std::optional<unsigned int> piece;
 

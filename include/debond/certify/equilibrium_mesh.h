@@ -4,6 +4,7 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/certify/equilibrium_element.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/unknowns.h>
@@ -11,16 +12,18 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace Debond
 {
   /// A body or a load for which there are no equilibrated stresses.
-  class EquilibriumError : public std::invalid_argument
+  class EquilibriumError : public EntryError
   {
   public:
-    using std::invalid_argument::invalid_argument;
+    explicit EquilibriumError(const std::string &message)
+      : EntryError("Certificate/Kind", message)
+    {}
   };
 
 
@@ -31,6 +34,15 @@ namespace Debond
   public:
     using EquilibriumError::EquilibriumError;
   };
+
+
+
+  /// Throws EquilibriumError for what is not done: contact boundaries that are
+  /// supported as well, and boundaries with several supports.
+  template <int dim>
+  void
+  check_supports(const BoundaryConditions &conditions,
+                 const Supports<dim>      &supports);
 
 
 
@@ -46,28 +58,35 @@ namespace Debond
    * each cell.
    */
   template <int dim>
-  class EquilibriumMesh
+  struct EquilibriumMesh
   {
-  public:
     static constexpr unsigned int unknowns_of_a_side =
       EquilibriumElement<dim>::unknowns_of_a_side;
 
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
     using Load = typename EquilibriumElement<dim>::Load;
 
-    /// A side on the contact boundary.
-    struct ContactSide
+    /// A side at the boundary.
+    struct Side
     {
-      std::array<dealii::Point<dim>, dim> corners;
-      std::array<unsigned int, dim>       vertices; ///< in this order, rising
-      dealii::Tensor<1, dim>              normal;   ///< outward unit normal
-      double                              measure;  ///< length or area
-      Cell                                cell;     ///< above it, active
+      Cell                                cell; ///< above it, active
+      unsigned int                        first_unknown;
+      std::array<unsigned int, dim>       vertices; ///< rising
+      std::array<dealii::Point<dim>, dim> corners;  ///< in this order
       dealii::types::boundary_id          id;
-      std::array<double, dim>             gap; ///< initial one, at the corners
+      dealii::Tensor<1, dim>              normal;  ///< outward unit normal
+      double                              measure; ///< length or area
+      double                              diameter;
+      std::array<double, dim>             gap = {}; ///< initial, at the corners
 
-      /// Of the normal displacement: its means with the weights dim lambda_k.
-      std::array<unsigned int, dim> unknowns;
+      /// The unknown that is the mean of the displacement along the first
+      /// direction, the normal one of contact sides, with the weight
+      /// dim lambda_k.
+      unsigned int
+      unknown(const unsigned int k) const
+      {
+        return first_unknown + dim * k;
+      }
     };
 
     /// A side with a traction that is not linear.
@@ -78,36 +97,17 @@ namespace Debond
       double width, height;
     };
 
-    /// @p thermal_stresses: of each active cell, as a pressure;
-    /// none if empty. Keeps a reference to the mesh. Throws EquilibriumError
-    /// for what is not done: contact sides that are supported as well, and
-    /// sides with several supports.
+    /// Takes supports that pass check_supports(). @p thermal_stresses: of each
+    /// active cell, as a pressure; none if empty. Keeps a reference to the
+    /// mesh. Throws EntryError where a load, a gap or a prescribed displacement
+    /// has no value.
     EquilibriumMesh(const dealii::Triangulation<dim> &mesh,
                     const BoundaryConditions         &conditions,
                     const Supports<dim>              &supports,
                     const Loads<dim>                 &loads,
                     const std::vector<double>        &thermal_stresses);
 
-    const dealii::Triangulation<dim> &
-    triangulation() const
-    {
-      return mesh;
-    }
-
-    /// Of an active cell, as of all others.
-    const Load &
-    load(const unsigned int cell) const
-    {
-      return loads_of_cells[cell];
-    }
-
-    const std::vector<ContactSide> &
-    contact_sides() const
-    {
-      return sides_in_contact;
-    }
-
-    /// Those of a cell but one, in its order.
+    /// The vertices of a cell but one, in its order.
     static std::array<unsigned int, dim>
     vertices_of_side(const Cell &cell, const unsigned int corner);
 
@@ -115,7 +115,7 @@ namespace Debond
     static unsigned int
     first_unknown(const Cell &cell, const unsigned int corner);
 
-    /// Of its sides, one after the other.
+    /// The unknowns of the sides of a cell, one side after the other.
     static std::vector<unsigned int>
     unknowns_of(const Cell &cell);
 
@@ -132,115 +132,58 @@ namespace Debond
       return all_directions[first_unknown / unknowns_of_a_side];
     }
 
-    /// Fixes an unknown.
-    void
-    fix(const unsigned int unknown)
-    {
-      fixed[unknown] = 1;
-    }
+    const dealii::Triangulation<dim> &triangulation;
+    std::vector<Load>                 loads_of_cells; ///< of the active ones
+    std::vector<Side>                 contact_sides;
 
-    bool
-    is_fixed(const unsigned int unknown) const
-    {
-      return fixed[unknown] != 0;
-    }
-
-    unsigned int
-    n_free_unknowns() const;
-
-    /// The work-conjugates of all unknowns.
-    const Eigen::VectorXd &
-    loads_on_sides() const
-    {
-      return loads;
-    }
-
-    /// The gaps and the prescribed displacements by unknown, zero for all
-    /// others: linear on each side, as they are at its corners.
-    const Eigen::VectorXd &
-    lifting() const
-    {
-      return prescribed;
-    }
+    // By unknown: whether it is fixed, its work-conjugate, and the gaps and the
+    // prescribed displacements, zero for all others: linear on each side, as
+    // they are at its corners.
+    std::vector<char> is_fixed;
+    Eigen::VectorXd   loads_on_sides;
+    Eigen::VectorXd   lifting;
 
     /// Whether tractions, gaps and prescribed displacements are linear on each
     /// side, and body forces and temperatures constant on each cell, to
     /// rounding.
-    bool
-    loads_are_exact() const
-    {
-      return exact_loads;
-    }
+    bool loads_are_exact = true;
 
-    const std::vector<LoadRest> &
-    load_rests() const
-    {
-      return all_rests;
-    }
+    std::vector<LoadRest> load_rests;
 
   private:
-    /// A side at the boundary.
-    struct BoundarySide
-    {
-      Cell                                cell;
-      unsigned int                        first_unknown;
-      std::array<unsigned int, dim>       vertices; ///< rising
-      std::array<dealii::Point<dim>, dim> corners;
-      dealii::types::boundary_id          id;
-      dealii::Tensor<1, dim>              normal;
-      double                              measure;
-      double                              diameter;
-    };
-
     void
     find_loads_of_cells(const Loads<dim>          &given,
                         const std::vector<double> &thermal_stresses);
 
-    /// Whether the change of temperature is the same everywhere on each cell.
-    bool
-    is_temperature_exact(const Loads<dim> &given) const;
-
     void
-    set_supports(const BoundarySide       &side,
+    set_supports(const Side               &side,
                  const BoundaryConditions &conditions,
                  const Supports<dim>      &supports);
 
     void
-    set_contact(const BoundarySide       &side,
+    set_contact(Side                     &side,
                 const BoundaryConditions &conditions,
                 const Supports<dim>      &supports);
 
     void
-    set_traction(const BoundarySide &side, const Loads<dim> &given);
+    set_traction(const Side &side, const Loads<dim> &given);
 
-    /// The normal comes first.
+    /// Makes the normal the first direction of a side.
     void
-    use_normal(const BoundarySide &side);
+    use_normal(const Side &side);
 
     void
-    fix(const BoundarySide &side, const unsigned int direction);
+    fix(const Side &side, const unsigned int direction);
 
-    /// The values of a function at the corners of a side become the
-    /// displacement in a direction, and are returned.
+    /// Makes the values of a function at the corners of a side the displacement
+    /// in a direction, and returns them.
     std::array<double, dim>
-    prescribe(const BoundarySide          &side,
+    prescribe(const Side                  &side,
               const unsigned int           direction,
               const dealii::Function<dim> &function,
               const unsigned int           component);
 
-    const dealii::Triangulation<dim> &mesh;
-    std::vector<Load>                 loads_of_cells;
-
     std::vector<dealii::Tensor<2, dim>> all_directions; ///< of sides
-    std::vector<ContactSide>            sides_in_contact;
-
-    // By unknown.
-    std::vector<char> fixed;
-    Eigen::VectorXd   loads;
-    Eigen::VectorXd   prescribed;
-
-    bool                  exact_loads = true;
-    std::vector<LoadRest> all_rests;
   };
 
 

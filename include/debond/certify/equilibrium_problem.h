@@ -24,48 +24,13 @@ namespace Debond
   class EquilibriumProblem
   {
   public:
-    using ContactSide = typename EquilibriumMesh<dim>::ContactSide;
-
-    /// Of an EquilibriumMesh with these arguments; throws as that does.
+    /// Is of an EquilibriumMesh with these arguments; throws as that does.
     EquilibriumProblem(const dealii::Triangulation<dim> &mesh,
                        const BoundaryConditions         &conditions,
                        const Supports<dim>              &supports,
                        const ByRegion<Material>         &materials,
                        const Loads<dim>                 &loads,
                        const std::vector<double>        &thermal_stresses = {});
-
-    unsigned int
-    n_cells() const
-    {
-      return static_cast<unsigned int>(elements.size());
-    }
-
-    const std::vector<ContactSide> &
-    contact_sides() const
-    {
-      return mesh.contact_sides();
-    }
-
-    /// Fixes an unknown, before anything is condensed.
-    void
-    fix(const unsigned int unknown)
-    {
-      mesh.fix(unknown);
-    }
-
-    /// Unknowns that are not fixed.
-    unsigned int
-    n_unknowns() const
-    {
-      return mesh.n_free_unknowns();
-    }
-
-    /// See EquilibriumMesh.
-    bool
-    loads_are_exact() const
-    {
-      return mesh.loads_are_exact();
-    }
 
     /// The problem condensed onto the first unknowns of the contact sides in
     /// their order, then the second ones (and the third ones):
@@ -121,13 +86,15 @@ namespace Debond
     std::vector<dealii::SymmetricTensor<2, dim>>
     mean_stresses(const std::vector<Eigen::VectorXd> &stresses) const;
 
+    /// An unknown of it can be fixed before anything is condensed.
+    EquilibriumMesh<dim> mesh;
+
   private:
     using Element = EquilibriumElement<dim>;
 
     void
     make_elements();
 
-    EquilibriumMesh<dim>     mesh;
     const ByRegion<Material> materials;
 
     /// Of the active cells; those that are the same share one.

@@ -90,7 +90,7 @@ namespace Debond
                  const std::vector<PiecewiseEnergy> &laws,
                  const std::vector<double>          &energies);
 
-    const std::vector<EquilibriumProblem<2>::ContactSide> &
+    const std::vector<EquilibriumMesh<2>::Side> &
     contact_sides() const
     {
       return sides;
@@ -147,12 +147,12 @@ namespace Debond
              sharers[sides[i].cell->active_cell_index()];
     }
 
-    const EquilibriumProblem<2>                           &equilibrium;
-    const std::vector<double>                             &trace_constants;
-    const std::vector<double>                             &energies;
-    const std::vector<PiecewiseEnergy>                    &laws;
-    const std::vector<EquilibriumProblem<2>::ContactSide> &sides;
-    const unsigned int                                     n;
+    const EquilibriumProblem<2>                 &equilibrium;
+    const std::vector<double>                   &trace_constants;
+    const std::vector<double>                   &energies;
+    const std::vector<PiecewiseEnergy>          &laws;
+    const std::vector<EquilibriumMesh<2>::Side> &sides;
+    const unsigned int                           n;
     std::vector<unsigned int> sharers; ///< contact sides of each cell
   };
 } // namespace Debond

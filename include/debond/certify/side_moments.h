@@ -15,6 +15,10 @@
 
 namespace Debond
 {
+  /// Barycentric coordinates of a side with weights, whose sum is 1.
+  template <int dim>
+  using SideRule = std::vector<std::pair<std::array<double, dim>, double>>;
+
   /// A traction on a side, as far as linear displacements see it.
   template <int dim>
   struct SideTraction
@@ -59,10 +63,9 @@ namespace Debond
 
 
 
-  /// Barycentric coordinates with weights, whose sum is 1: those of a side are
-  /// integrated exactly up to degree 5.
+  /// The rule that integrates over a side exactly up to degree 5.
   template <int dim>
-  const std::vector<std::pair<std::array<double, dim>, double>> &
+  const SideRule<dim> &
   side_rule();
 
   /// The means of a displacement with the weights dim lambda_k, lambda the
