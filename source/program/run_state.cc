@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
-#include <debond/input/bad_input.h>
+#include <debond/input/parameters.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/program/run_state.h>
 
+#include <boost/algorithm/string/erase.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/container_hash/hash.hpp>
@@ -12,7 +13,7 @@
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
-#include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -138,26 +139,24 @@ namespace Debond
 
 
 
-    /// The values by the paths of their entries.
-    std::map<std::string, std::string>
-    entries_of(const std::string &scene)
+    /// The values of each entry in two scenes, without their spaces.
+    std::map<std::string, std::array<std::string, 2>>
+    values_of(const std::array<std::string, 2> &scenes)
     {
-      std::map<std::string, std::string> entries;
-      std::istringstream                 lines(scene);
-      std::string                        line, section;
-      while (std::getline(lines >> std::ws, line))
-        if (line.rfind("subsection ", 0) == 0)
-          section += line.substr(11) + '/';
-        else if (line == "end")
-          section.erase(section.rfind('/', section.size() - 2) + 1);
-        else if (line.rfind("set ", 0) == 0)
-          {
-            const std::size_t equals = line.find('=');
-            std::string       name   = line.substr(4, equals - 4);
-            name.erase(name.find_last_not_of(' ') + 1);
-            entries[section + name] = line.substr(equals + 1);
-          }
-      return entries;
+      const std::array<std::string, 2> nothing = {{"nothing", "nothing"}};
+      std::map<std::string, std::array<std::string, 2>> values;
+      for (unsigned int k = 0; k < scenes.size(); ++k)
+        {
+          SceneTable         table;
+          std::istringstream text(scenes[k]);
+          table.read(text, "");
+          for (const auto &[path, unused] : table.locations())
+            {
+              auto &both = values.try_emplace(path, nothing).first->second;
+              both[k] = boost::algorithm::erase_all_copy(table.get(path), " ");
+            }
+        }
+      return values;
     }
 
 
@@ -241,21 +240,11 @@ namespace Debond
     boost::archive::binary_iarchive archive(content);
     exchange(archive, state);
 
-    const auto before = entries_of(state.scene), now = entries_of(scene);
-    for (const auto *const entries : {&before, &now})
-      for (const auto &[name, value] : *entries)
-        {
-          const auto of = [&name = name](const auto &all) {
-            const auto  entry = all.find(name);
-            std::string text  = entry == all.end() ? "nothing" : entry->second;
-            text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
-            return text;
-          };
-          if (!may_differ(name) && of(before) != of(now))
-            throw BadInput({file_name + " is of another scene: " + name +
-                            " was " + of(before) + " and is " + of(now) +
-                            "; run without --restart"});
-        }
+    for (const auto &[name, values] : values_of({state.scene, scene}))
+      if (!may_differ(name) && values[0] != values[1])
+        throw BadInput({file_name + " is of another scene: " + name + " was " +
+                        values[0] + " and is " + values[1] +
+                        "; run without --restart"});
     return state;
   }
 
