@@ -10,6 +10,8 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace Debond
 {
@@ -270,7 +272,7 @@ namespace Debond
         const auto        entries = std::make_shared<BondEntries>();
         const std::string expression =
           ", a number or an expression in x, y (and z) as in Loads";
-        const std::vector<std::array<std::string, 2>> texts = {
+        const std::vector<std::pair<std::string, std::string>> texts = {
           {"a" + expression + ": zero where there are no bonds",
            "force per volume"},
           {"M, the displacement at which bonds break" + expression, "length"},
