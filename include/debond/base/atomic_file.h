@@ -28,7 +28,7 @@ namespace Debond
   write_atomically(const std::string                         &file_name,
                    const std::function<void(std::ostream &)> &write);
 
-  /// The same by this rank alone.
+  /// Writes a file as write_atomically() does, by this rank alone.
   void
   write_own_file(const std::string                         &file_name,
                  const std::function<void(std::ostream &)> &write);

@@ -6,16 +6,16 @@
 
 namespace Debond
 {
-  /// What this process has, in bytes: now, and at most so far.
+  /// The memory that this process has, in bytes: now, and at most so far.
   double
   used_memory();
 
   double
   peak_memory();
 
-  /// What each process may still take, in bytes: of @p limit, which is for all
-  /// of it, or of what the system can give, if that is 0. To be called by all
-  /// ranks.
+  /// The memory that each process may still take, in bytes: of @p limit, which
+  /// is for all of it, or of what the system can give, if that is 0. To be
+  /// called by all ranks.
   double
   memory_left(const double limit);
 

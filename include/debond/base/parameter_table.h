@@ -20,15 +20,15 @@
 
 namespace Debond
 {
-  /// Which values an entry may have, by a property and the words that describe
-  /// it. Of a list they are the words for it all, and the property of each
-  /// item.
+  /// The values that an entry may have, by a property and the words that
+  /// describe it. Of a list they are the words for it all, and the property of
+  /// each item.
   class Pattern : public dealii::Patterns::PatternBase
   {
   public:
     using Property = std::function<bool(const std::string &)>;
 
-    /// Without a property any text.
+    /// Allows any text without a property.
     explicit Pattern(const std::string &words, const Property &property = {})
       : words(words)
       , property(property)
@@ -159,7 +159,7 @@ namespace Debond
     void
     read(std::istream &input, const std::string &file);
 
-    /// An assignment "Section/Name=value" from the command line.
+    /// Reads an assignment "Section/Name=value" from the command line.
     void
     assign(const std::string &assignment);
 
@@ -186,22 +186,23 @@ namespace Debond
       return entries.at(path).value;
     }
 
-    /// Where each entry was set, "FILE:LINE"; the file if it was not.
+    /// Returns the place where each entry was set, "FILE:LINE", or the file if
+    /// it was not.
     std::map<std::string, std::string>
     locations() const;
 
-    /// An error: name and value of the entry @p path and the @p reason why it
-    /// is not allowed, unless it, or one of @p others, of which the reason
+    /// Adds an error: name and value of the entry @p path and the @p reason why
+    /// it is not allowed, unless it, or one of @p others, of which the reason
     /// speaks too, was not allowed in the first place.
     void
     reject(const std::string              &path,
            const std::string              &reason,
            const std::vector<std::string> &others = {});
 
-    /// For @p entries, separated by commas, that the run does not look at for
-    /// this @p reason, with their families and sections ("Section/"). What has
-    /// another value than the default is named in a note, or rejected if an
-    /// entry is given because of whose value the run does not.
+    /// Names in a note which of the @p entries, separated by commas, with their
+    /// families and sections ("Section/"), have another value than the default
+    /// although the run does not look at them for this @p reason, or rejects
+    /// them if an entry is given because of whose value the run does not.
     void
     without_effect(const std::string &entries,
                    const std::string &reason,
@@ -211,7 +212,7 @@ namespace Debond
     void
     print(std::ostream &out, const bool documentation) const;
 
-    /// One line each, in the order of their detection.
+    /// Errors and notes have one line each, in the order of their detection.
     std::vector<std::string> errors, notes;
 
   private:
@@ -261,8 +262,8 @@ namespace Debond
     std::map<std::string, Family> families; ///< by path
     std::string                   file_name;
 
-    /// What a file and those that it includes set: values and their locations
-    /// by path.
+    /// The values that a file and those that it includes set, with their
+    /// locations, by path.
     struct ReadFile
     {
       std::map<std::string, std::array<std::string, 2>> values;

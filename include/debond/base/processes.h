@@ -25,9 +25,9 @@ namespace Debond
   bool
   is_first_rank();
 
-  /// Whether it is so on any of the started ranks. All of them have to ask,
-  /// each from its first thread: what depends on clocks, signals or the memory
-  /// of a process has to be the same for all.
+  /// Says whether it is so on any of the started ranks. All of them have to
+  /// ask, each from its first thread: what depends on clocks, signals or the
+  /// memory of a process has to be the same for all.
   bool
   any_rank(const bool is_so_here);
 
@@ -35,7 +35,7 @@ namespace Debond
   double
   least_of_ranks(const double number_here);
 
-  /// How ranks end that have all met an error.
+  /// Ends ranks that have all met an error.
   struct EndOfRanks
   {
     bool is_speaker; ///< the first one that has an error of its own

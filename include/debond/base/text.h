@@ -9,7 +9,7 @@
 
 namespace Debond
 {
-  /// The shortest text that reads back as the same number.
+  /// Returns the shortest text that reads back as the same number.
   std::string
   shortest_text(const double number);
 
@@ -21,17 +21,18 @@ namespace Debond
   inline const std::string decimal_comma =
     "decimal comma? Numbers have a point, and nothing between thousands";
 
-  /// That behind "; " if the text has a comma between two digits, or nothing.
+  /// Returns that question behind "; " if the text has a comma between two
+  /// digits, or nothing.
   std::string
   comma_hint(const std::string &text);
 
 
 
-  /// The words one after the other with the separator between them.
+  /// Returns the words one after the other with the separator between them.
   std::string
   join(const std::vector<std::string> &words, const std::string &separator);
 
-  /// What is printed of all parts one after the other; manipulators of streams,
+  /// Prints all parts one after the other; manipulators of streams,
   /// such as std::setprecision(), hold for the parts behind them.
   template <typename... Parts>
   std::string
@@ -42,34 +43,35 @@ namespace Debond
     return text.str();
   }
 
-  /// The text with its control characters, which can make a terminal show what
-  /// is not so, as in "\x1b".
+  /// Returns the text with its control characters, which can make a terminal
+  /// show what is not so, as in "\x1b".
   std::string
   printable(const std::string &text);
 
-  /// A line on the standard error, printable.
+  /// Prints a line on the standard error, printable.
   void
   print_error(const std::string &message);
 
-  /// The number with this many digits behind the point, such as "1.23e-04".
+  /// Prints the number with this many digits behind the point, such as
+  /// "1.23e-04".
   inline std::string
   scientific(const double value, const int digits)
   {
     return words(std::scientific, std::setprecision(digits), value);
   }
 
-  /// For bounds: the same, but not above the number, and not below it.
+  /// Prints bounds likewise, but not above the number, and not below it.
   std::string
   scientific_below(const double value, const int digits);
   std::string
   scientific_above(const double value, const int digits);
 
-  /// A name as a part of the title of a column: letters, digits and
+  /// Returns a name as a part of the title of a column: letters, digits and
   /// underscores.
   std::string
   as_title(const std::string &name);
 
-  /// As scientific() without an exponent.
+  /// Prints as scientific() does, without an exponent.
   inline std::string
   fixed_point(const double value, const int digits)
   {

@@ -6,12 +6,13 @@
 
 namespace Debond
 {
-  /// What the program was built from, and how.
+  /// The sources that the program was built from, and how.
   struct Version
   {
     std::string program; ///< "0.1.0"
 
-    /// With "-dirty" if the working copy had changes; "unknown" without git.
+    /// It ends in "-dirty" if the working copy had changes, and is "unknown"
+    /// without git.
     std::string revision;
 
     std::string deal_ii;

@@ -8,7 +8,8 @@ namespace Debond
 {
   class ParameterTable;
 
-  /// Until when the mesh is refined where that makes J more accurate.
+  /// The limits up to which the mesh is refined where that makes J more
+  /// accurate.
   struct AccuracyParameters
   {
     /// Estimated error relative to J; 0 for any.
@@ -17,10 +18,10 @@ namespace Debond
     /// Width of the interval of a certificate relative to J; 0 for any.
     double certified_width = 0.;
 
-    /// Of the finest mesh; 0 for as many as the memory has room for.
+    /// Unknowns of the finest mesh; 0 for as many as the memory has room for.
     unsigned int maximum_unknowns = 0;
 
-    /// Whether the mesh is refined at all.
+    /// Says whether the mesh is refined at all.
     bool
     is_adaptive() const
     {
@@ -30,7 +31,7 @@ namespace Debond
 
 
 
-  /// What is to be certified.
+  /// The minimum that is to be certified.
   enum class CertificateKind
   {
     none,
@@ -45,7 +46,7 @@ namespace Debond
 
 
 
-  /// What makes a result count, and what it is compared with.
+  /// The limit up to which a result counts, and what it is compared with.
   struct VerificationParameters
   {
     /// Largest Verification::error() of a result that counts.
@@ -57,7 +58,7 @@ namespace Debond
 
 
 
-  /// The sections Certificate, Accuracy and Verification.
+  /// Binds the sections Certificate, Accuracy and Verification.
   void
   bind_accuracy(CertificateParameters  &certificate,
                 AccuracyParameters     &accuracy,

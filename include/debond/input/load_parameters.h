@@ -13,21 +13,21 @@
 
 namespace Debond
 {
-  /// What acts on a boundary, as an expression.
+  /// A load on a boundary, as an expression.
   struct SurfaceLoad
   {
     std::string kind; ///< "Traction", "Pressure" or "Force"
     std::string boundary;
     std::string expression;
 
-    /// Of the scene.
+    /// The path of its entry.
     std::string
     entry() const
     {
       return "Loads/" + kind + ' ' + boundary;
     }
 
-    /// Of the expression: a pressure has one.
+    /// The number of components of the expression: a pressure has one.
     unsigned int
     n_components(const unsigned int dimension) const
     {
@@ -42,12 +42,12 @@ namespace Debond
   {
     std::string body_force; ///< empty for none
 
-    /// By the name of the boundary; those without one are left out.
+    /// Expressions by the names of boundaries; those without one are left out.
     std::map<std::string, std::string> tractions;
     std::map<std::string, std::string> pressures;
     std::map<std::string, std::string> forces;
 
-    /// All of these.
+    /// Returns all of these.
     std::vector<SurfaceLoad>
     on_boundaries() const;
 

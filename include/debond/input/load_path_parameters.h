@@ -13,7 +13,7 @@
 
 namespace Debond
 {
-  /// What is computed beside the states that a load path leads to.
+  /// The minima that are computed beside the states that a load path leads to.
   enum class GlobalBranch
   {
     none,
@@ -28,23 +28,24 @@ namespace Debond
     /// Multiples of the loads in their order; empty if there is no load path.
     std::vector<double> factors;
 
-    /// Those of prescribed displacements, as many; empty if they are the same.
+    /// As many multiples of prescribed displacements; empty if they are the
+    /// same.
     std::vector<double> displacement_factors;
 
-    /// What has no factor: names of boundaries with loads, "body force".
+    /// Loads without a factor: names of boundaries with loads, "body force".
     std::set<std::string> dead_loads;
 
-    /// Whether bonds return to branches that they have left.
+    /// Says whether bonds return to branches that they have left.
     bool bonds_heal = true;
 
-    /// Whether states depend on one factor and not on those before.
+    /// Says whether states depend on one factor and not on those before.
     bool
     has_global_branch() const
     {
       return bonds_heal && displacement_factors.empty();
     }
 
-    /// Of a step, from 0.
+    /// Returns the factors of a step, from 0.
     LoadFactors
     at(const unsigned int step) const
     {
@@ -53,11 +54,11 @@ namespace Debond
                                              displacement_factors[step]};
     }
 
-    /// Whether only prescribed displacements change on the path.
+    /// Says whether only prescribed displacements change on the path.
     bool
     moves_only() const;
 
-    /// That of the loads, unless they stay as they are.
+    /// Returns the factor of the loads, unless they stay as they are.
     double
     varying(const LoadFactors &at_step) const
     {
@@ -70,8 +71,7 @@ namespace Debond
 
     GlobalBranch global_branch = GlobalBranch::search;
 
-    /// Whether the unstable states between those that the path leads to are
-    /// wanted.
+    /// Asks for the unstable states between those that the path leads to.
     bool arc = false;
   };
 
@@ -83,7 +83,7 @@ namespace Debond
   std::vector<double>
   parse_load_factors(const std::string &text);
 
-  /// The section Load path.
+  /// Binds the section Load path.
   void
   bind_load_path(LoadPathParameters &load_path, ParameterTable &table);
 

@@ -16,28 +16,30 @@ namespace Debond
   {
     Material everywhere;
 
-    /// What regions set, by the entry ("Young modulus") and the region's name.
+    /// Texts of regions, by the entry ("Young modulus") and the region's name.
     std::map<std::string, std::map<std::string, std::string>> own;
 
-    /// The materials of the regions that have a number of their own, by name.
+    /// Returns the materials of the regions that have a number of their own, by
+    /// name.
     std::map<std::string, Material>
     of_regions() const;
 
-    /// Whether some material expands with temperature.
+    /// Says whether some material expands with temperature.
     bool
     expands() const;
 
-    /// Whether the thermal stress of some material depends on the direction.
+    /// Says whether the thermal stress of some material depends on the
+    /// direction.
     bool
     has_axes() const;
 
-    /// An entry of the section that is the region's own, or the whole body's
-    /// if @p region is empty, on which its elasticity depends.
+    /// Returns an entry of the section that is the region's own, or the whole
+    /// body's if @p region is empty, on which its elasticity depends.
     std::string
     entry_of(const std::string &region) const;
   };
 
-  /// The section Material.
+  /// Binds the section Material.
   void
   bind_material(MaterialParameters &materials, ParameterTable &table);
 

@@ -22,7 +22,7 @@ namespace Debond
     bool        machine_details  = true;
   };
 
-  /// The section Output.
+  /// Binds the section Output.
   void
   bind_output(OutputParameters &output, ParameterTable &table);
 

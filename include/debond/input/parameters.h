@@ -28,7 +28,7 @@ namespace Debond
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
 
-    /// What is odd in the scene, for its user.
+    /// Notes for the user on what is odd in the scene.
     std::vector<std::string> notes;
   };
 
@@ -43,9 +43,9 @@ namespace Debond
   public:
     SceneTable();
 
-    /// The values of what has been read, @p scene being the path of its file.
-    /// Throws BadInput with the errors of the table and those of values that
-    /// do not fit together.
+    /// Returns the values of what has been read, @p scene being the path of its
+    /// file. Throws BadInput with the errors of the table and those of values
+    /// that do not fit together.
     Parameters
     parameters(const std::string &scene);
 

@@ -12,12 +12,12 @@
 
 namespace Debond
 {
-  /// The section Probes: texts by name.
+  /// Binds the section Probes: texts by name.
   void
   bind_probes(std::map<std::string, std::string> &probes,
               ParameterTable                     &table);
 
-  /// What is wrong is left in the table as an error.
+  /// Leaves what is wrong in the table as an error.
   void
   check_probes(const std::map<std::string, std::string> &probes,
                const unsigned int                        dimension,
@@ -25,7 +25,7 @@ namespace Debond
                const std::set<std::string>              &regions,
                ParameterTable                           &table);
 
-  /// Of texts that have been checked.
+  /// Makes the probes of texts that have been checked.
   template <int dim>
   std::vector<Probe<dim>>
   make_probes(const std::map<std::string, std::string> &probes);

@@ -17,9 +17,9 @@
 
 namespace Debond
 {
-  /// What the least J is looked for of: the body with its discretisation, its
-  /// materials, what holds and loads it, and its bonds. Nothing about who finds
-  /// it, how well and what is written.
+  /// The problem whose least J is looked for: the body with its discretisation,
+  /// its materials, what holds and loads it, and its bonds. Nothing about who
+  /// finds it, how well and what is written.
   struct ProblemParameters
   {
     std::string                            scene; ///< path of the file
@@ -31,7 +31,7 @@ namespace Debond
     std::set<std::string> contact_boundaries            = {"bottom"};
     bool                  tangential_displacement_fixed = true;
 
-    /// By the names of contact boundaries: "fixed" or "free".
+    /// "fixed" or "free" by the names of contact boundaries.
     std::map<std::string, std::string> tangential_displacements;
     SupportParameters                  supports;
     LoadParameters                     loads;
@@ -41,7 +41,7 @@ namespace Debond
     ContactQuadratureParameters        quadrature;
     std::string                        quadrature_name = "nodal";
 
-    /// Where entries were set, by path.
+    /// The places where entries were set, by path.
     std::map<std::string, std::string> locations;
   };
 } // namespace Debond

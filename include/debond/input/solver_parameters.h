@@ -14,7 +14,7 @@
 
 namespace Debond
 {
-  /// How much a better minimum is searched for.
+  /// The effort with which a better minimum is searched for.
   enum class BondSearchChoice
   {
     automatic, ///< what it takes if the method is automatic, else none
@@ -77,11 +77,11 @@ namespace Debond
 
 
 
-  /// The section Solver.
+  /// Binds the section Solver.
   void
   bind_solver(SolverParameters &solver, ParameterTable &table);
 
-  /// What its patterns leave to be checked.
+  /// Checks what the patterns of the entries leave to be checked.
   void
   check_solver(const SolverParameters &solver, ParameterTable &table);
 } // namespace Debond

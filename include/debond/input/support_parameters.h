@@ -12,27 +12,26 @@
 
 namespace Debond
 {
-  /// What supports the body beside clamps. Expressions are with the constants
+  /// The supports of the body beside clamps. Expressions are with the constants
   /// of the loads.
   struct SupportParameters
   {
     std::set<std::string> rollers; ///< boundaries
 
-    /// By the name of the boundary: for each component "free" or an
-    /// expression.
+    /// For each component "free" or an expression, by the name of the boundary.
     std::map<std::string, std::string> displacements;
 
-    /// Between body and foundation; empty for none. By the name of the
-    /// boundary those that are not that of all others.
+    /// The gap between body and foundation, empty for none, and the gaps that
+    /// are not that of all others, by the name of the boundary.
     std::string                        gap;
     std::map<std::string, std::string> gaps;
   };
 
-  /// Roller boundaries, prescribed displacements and the gap.
+  /// Binds roller boundaries, prescribed displacements and the gap.
   void
   bind_supports(SupportParameters &supports, ParameterTable &table);
 
-  /// What is wrong is left in the table as an error.
+  /// Leaves what is wrong in the table as an error.
   void
   check_supports(const SupportParameters             &supports,
                  const BodyDescription               &body,

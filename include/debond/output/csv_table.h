@@ -12,13 +12,13 @@
 
 namespace Debond
 {
-  /// Texts, counts and numbers under titles, as CSV. Numbers have as many
-  /// digits as read back as the number.
+  /// A table of texts, counts and numbers under titles, as CSV. Numbers have as
+  /// many digits as read back as the number.
   class CsvTable
   {
   public:
-    /// A column with the @p value, a member or a function, of each item; all
-    /// columns have as many.
+    /// Adds a column with the @p value, a member or a function, of each item;
+    /// all columns have as many items.
     template <typename Item, typename Value>
     void
     add(const std::string       &title,
@@ -31,7 +31,7 @@ namespace Debond
         rows[1 + i].push_back(cell(std::invoke(value, items[i])));
     }
 
-    /// A last row, whose last cells may be left out.
+    /// Adds a last row, whose last cells may be left out.
     template <typename... Cells>
     void
     add_row(const Cells &...cells)
@@ -40,7 +40,8 @@ namespace Debond
       rows.back().resize(rows[0].size());
     }
 
-    /// Throws std::runtime_error naming the file if it cannot be written.
+    /// Writes the file. Throws std::runtime_error naming it if it cannot be
+    /// written.
     void
     write(const std::string &file_name) const;
 

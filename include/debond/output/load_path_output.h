@@ -22,7 +22,8 @@ namespace Debond
   class LoadPathOutput
   {
   public:
-    /// Keeps references: the @p steps and the @p arc need not be there yet.
+    /// Keeps references to all: the @p steps and the @p arc need not be there
+    /// yet.
     LoadPathOutput(const OutputParameters               &output,
                    const ElasticProblem<dim>            &problem,
                    const std::vector<LoadPathStep<dim>> &steps,
@@ -33,12 +34,12 @@ namespace Debond
       , arc(arc)
     {}
 
-    /// Those that an earlier run left in load_path/.
+    /// Removes the files that an earlier run left in load_path/.
     void
     remove_steps() const;
 
-    /// After the steps @p done of an earlier run, whose files are there. The
-    /// last one is to be added again.
+    /// Goes on after the steps @p done of an earlier run, whose files are
+    /// there. The last one is to be added again.
     void
     go_on_after(const std::vector<LoadPathStep<dim>> &done);
 
@@ -49,8 +50,8 @@ namespace Debond
         const DofVector         &u,
         const Verification<dim> &verification);
 
-    /// All but those in load_path/: the table and the records of the files
-    /// above.
+    /// Returns all files but those in load_path/: the table and the records of
+    /// the files above.
     std::vector<OutputFile>
     files();
 

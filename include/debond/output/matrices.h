@@ -9,9 +9,9 @@
 
 namespace Debond
 {
-  /// The discrete problem of a scene as Matrix Market files for other programs,
-  /// if they are @p wanted; see doc/reference/output.md. Keeps a reference to
-  /// the scene. A is factorised once more for S and g.
+  /// Returns the discrete problem of a scene as Matrix Market files for other
+  /// programs, if they are @p wanted; see doc/reference/output.md. Keeps a
+  /// reference to the scene. A is factorised once more for S and g.
   template <int dim>
   std::vector<OutputFile>
   matrix_files(const Scene<dim> &scene, const bool wanted);

@@ -17,14 +17,16 @@ namespace Debond
   {
     std::string name;
 
-    /// Whether the scene asks for it and the run has it.
+    /// Says whether the scene asks for the file and the run has it.
     std::function<bool()> is_wanted;
 
-    /// Gets the path. Throws std::runtime_error naming what cannot be written.
+    /// Writes it at the path that it gets. Throws std::runtime_error naming
+    /// what cannot be written.
     std::function<void(const std::string &)> write;
   };
 
-  /// Removes what an earlier run left: it must not stand beside new results.
+  /// Removes the files that an earlier run left: they must not stand beside new
+  /// results.
   void
   remove_files(const std::vector<OutputFile> &files,
                const std::string             &directory);

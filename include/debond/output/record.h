@@ -14,8 +14,8 @@
 namespace Debond
 {
   /**
-   * What a run says: numbers and words for summary.json, and the lines of the
-   * log, so that both are written down in one place (report.h).
+   * A record of what a run says: numbers and words for summary.json, and the
+   * lines of the log, so that both are written down in one place (report.h).
    */
   class Record
   {
@@ -77,7 +77,7 @@ namespace Debond
     void
     write(const std::string &file_name) const;
 
-    /// Null without a number.
+    /// Returns the number, or null without one.
     static Json
     json_of(const std::optional<double> &number)
     {

@@ -12,8 +12,8 @@
 
 namespace Debond
 {
-  /// Program, scene, size of the problem and method, @p bundle_weight being the
-  /// u_k of the Euclidean one.
+  /// Reports program, scene, size of the problem and method, @p bundle_weight
+  /// being the u_k of the Euclidean one.
   template <int dim>
   void
   report_problem(const Scene<dim>   &scene,
@@ -21,13 +21,14 @@ namespace Debond
                  const double        bundle_weight,
                  Record             &record);
 
-  /// A mesh of a loop that refines, as the @p number-th one, when it is done.
+  /// Reports a mesh of a loop that refines, as the @p number-th one, when it is
+  /// done.
   void
   report_level(const unsigned int   number,
                const AdaptiveLevel &level,
                Record              &record);
 
-  /// Status, result, that of a load path as well, and verification.
+  /// Reports status, result, that of a load path as well, and verification.
   template <int dim>
   void
   report_result(const Scene<dim>     &scene,
@@ -35,7 +36,7 @@ namespace Debond
                 const RunResult<dim> &result,
                 Record               &record);
 
-  /// Times and memory, @p peak_memory in bytes.
+  /// Reports times and memory, @p peak_memory in bytes.
   template <int dim>
   void
   report_cost(const RunResult<dim> &result,
@@ -43,7 +44,7 @@ namespace Debond
               const double          peak_memory,
               Record               &record);
 
-  /// The paths of the files written.
+  /// Reports the paths of the files written.
   void
   report_files(const std::vector<std::string> &files, Record &record);
 } // namespace Debond

@@ -18,15 +18,15 @@
 
 namespace Debond
 {
-  /// What a run computed, for its log and its files.
+  /// The result of a run, for its log and its files.
   template <int dim>
   struct RunResult
   {
-    /// In words what the solver and the verification make of it.
+    /// The judgement of the solver and of the verification, in words.
     std::string status;
     std::string message; ///< why it is no success
 
-    /// What did not go as it should, and did not decide on the status.
+    /// Notes on what did not go as it should, and did not decide on the status.
     std::vector<std::string> notes;
 
     SolveResult       solve;
@@ -35,29 +35,30 @@ namespace Debond
     ProbeValues<dim>  probes;
     ProbeValues<dim>  means; ///< over the pieces with a name
 
-    /// Of what the solver found, if it has come to its end.
+    /// There is one of the solver's result, if the solver came to its end.
     std::optional<ErrorEstimate> estimate;
 
-    /// If the solver says that the body comes off, and it does.
+    /// There is one if the solver says that the body comes off, and it does.
     std::optional<ComingOff<dim>> coming_off;
 
-    /// If the mesh was refined; all the rest is of the last one.
+    /// The meshes, if the mesh was refined; all the rest is of the last one.
     std::vector<AdaptiveLevel> levels;
 
-    /// If the exact displacement is known.
+    /// There is one if the exact displacement is known.
     std::optional<DisplacementError> displacement_error;
 
     /// More numbers of cells for body.vtu, and of faces for contact.vtu.
     std::vector<CellField> cell_fields, face_fields;
 
-    /// If the scene has a load path; all the rest is of its last step.
+    /// The steps, if the scene has a load path; all the rest is of the last
+    /// one.
     std::vector<LoadPathStep<dim>> path;
     std::vector<LoadPathStep<dim>> arc; ///< see follow_load_path()
 
     /// Wall seconds of the parts of the run, in their order.
     std::vector<std::pair<std::string, double>> times;
 
-    /// Whether the solver is content and the verification too.
+    /// Says whether both solver and verification are content.
     bool
     is_success() const
     {
@@ -70,14 +71,15 @@ namespace Debond
       return status == to_string(SolverStatus::comes_off);
     }
 
-    /// Whether what there is can be relied on.
+    /// Says whether the result can be relied on.
     bool
     is_answer() const
     {
       return is_success() || comes_off();
     }
 
-    /// Whether there is a displacement: none if the body comes off at once.
+    /// Says whether there is a displacement: none if the body comes off at
+    /// once.
     bool
     has_displacement() const
     {

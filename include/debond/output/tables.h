@@ -14,8 +14,8 @@
 namespace Debond
 {
   /**
-   * The paper's Figures 5 and 6 as CSV, one row per contact node: x, y[, z],
-   * u_nu, normal_force, normal_force_density, allowed_lower, allowed_upper,
+   * Writes the paper's Figures 5 and 6 as CSV, one row per contact node: x, y[,
+   * z], u_nu, normal_force, normal_force_density, allowed_lower, allowed_upper,
    * violation, state, tangential_force_x, ... Throws
    * std::runtime_error naming the file if it cannot be written.
    */
@@ -25,7 +25,7 @@ namespace Debond
                         const Verification<dim>    &verification,
                         const std::string          &file_name);
 
-  /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
+  /// Writes the iteration history as CSV: iteration, functional, v, t_L, t_R,
   /// bundle_size, qp_steps, kind. @p found: J of the state that a search or a
   /// proof put in the place of the last iterate, for a last row with this
   /// number and the kind "search".
@@ -34,7 +34,7 @@ namespace Debond
                 const std::optional<double>        &found,
                 const std::string                  &file_name);
 
-  /// The same for majorise-minimise: iteration, functional, residual,
+  /// Writes the history of majorise-minimise: iteration, functional, residual,
   /// active_set_steps, linear_iterations, contact_nodes. The row of @p found
   /// has the first two.
   void
@@ -42,7 +42,7 @@ namespace Debond
                 const std::optional<double>                  &found,
                 const std::string                            &file_name);
 
-  /// The same for a proof: nodes, open nodes, lower bound, J, seconds.
+  /// Writes the history of a proof: nodes, open nodes, lower bound, J, seconds.
   void
   write_history(const std::vector<ProofProgress> &history,
                 const std::string                &file_name);

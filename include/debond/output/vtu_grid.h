@@ -18,7 +18,7 @@ namespace Debond
    */
   struct VtuGrid
   {
-    /// With VTK's numbers.
+    /// The kinds of cells, with VTK's numbers.
     enum class CellType : std::uint8_t
     {
       line                  = 3,
@@ -35,7 +35,7 @@ namespace Debond
       unsigned int       n_components = 1; ///< or, of a vector, 3
       std::vector<float> numbers      = {};
 
-      /// In 2D with a third component, which VTK wants.
+      /// Appends a vector, in 2D with a third component, which VTK wants.
       template <int dim>
       void
       add(const dealii::Tensor<1, dim> &vector)
@@ -51,7 +51,7 @@ namespace Debond
     std::vector<std::int32_t> cells     = {}; ///< their points, in VTK's order
     std::vector<Field>        at_points = {}, in_cells = {};
 
-    /// Returns its number.
+    /// Appends a point and returns its number.
     template <int dim>
     std::int32_t
     add_point(const dealii::Point<dim> &position)
