@@ -173,7 +173,7 @@ namespace Debond
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
                          {problem->S, problem->g, *problem->phi, interruption},
-                         problem->kept_of(given_means));
+                         given_means(problem->kept));
       known.nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?

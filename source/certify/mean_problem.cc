@@ -206,6 +206,42 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Eliminates from 1/2 x'A x - b'x what the problem does not keep; false if
+    /// the others are not safely determined.
+    bool
+    eliminate(const Eigen::MatrixXd &A,
+              const Eigen::VectorXd &b,
+              MeanProblem           &result)
+    {
+      const unsigned int        n      = result.n_sides();
+      std::vector<unsigned int> others = result.eliminated;
+      for (unsigned int i = 0; i < n; ++i)
+        others.push_back(n + i);
+      // That there is an inverse proves that it is convex in the others.
+      auto inverse = safe_inverse(A(others, others));
+      if (!inverse)
+        return false;
+      result.inverse_in_others       = std::move(*inverse);
+      const Eigen::VectorXd b_others = b(others);
+      const Eigen::MatrixXd mixed    = A(others, result.kept);
+      result.offset                  = result.inverse_in_others * b_others;
+      result.to_others               = -result.inverse_in_others * mixed;
+      result.constant -= 0.5 * b_others.dot(result.offset);
+      const Eigen::MatrixXd S =
+        A(result.kept, result.kept) + mixed.transpose() * result.to_others;
+      result.S = 0.5 * (S + S.transpose());
+      // What shifts take may be more than what the bonds of stiff laws leave.
+      if (!is_safely_positive_definite(result.S))
+        return false;
+      result.g = b(result.kept) + result.to_others.transpose() * b_others;
+      return true;
+    }
+  } // namespace
+
+
+
   std::optional<MeanProblem>
   MeanProblems::try_mean_problem(const std::vector<CertifiedSide> &ranges,
                                  const Eigen::VectorXd            &means,
@@ -280,29 +316,11 @@ namespace Debond
         kept_laws.push_back(zero);
       }
 
-    std::vector<unsigned int> others = result.eliminated;
-    for (unsigned int i = 0; i < n; ++i)
-      others.push_back(n + i);
-    // That there is an inverse proves that it is convex in the others.
-    auto inverse = safe_inverse(A(others, others));
-    if (!inverse)
+    if (!eliminate(A, b, result))
       return {};
-    result.inverse_in_others       = std::move(*inverse);
-    const Eigen::VectorXd b_others = b(others);
-    const Eigen::MatrixXd mixed    = A(others, result.kept);
-    result.offset                  = result.inverse_in_others * b_others;
-    result.to_others               = -result.inverse_in_others * mixed;
-    result.constant -= 0.5 * b_others.dot(result.offset);
-    const Eigen::MatrixXd S =
-      A(result.kept, result.kept) + mixed.transpose() * result.to_others;
-    result.S = 0.5 * (S + S.transpose());
-    // What shifts take may be more than what the bonds of stiff laws leave.
-    if (!is_safely_positive_definite(result.S))
-      return {};
-    result.g   = b(result.kept) + result.to_others.transpose() * b_others;
     result.phi = std::make_unique<SeparableBranches>(kept_laws);
 
-    const Eigen::VectorXd at = result.all(result.kept_of(means));
+    const Eigen::VectorXd at = result.all(means(result.kept));
     result.rounding          = equilibrium.rounding_of(*condensed,
                                               MeansAndSlopes::unknowns(at),
                                               weights);

@@ -190,7 +190,59 @@ namespace Debond
 
 
 
-    /// Between points, without those at which a value is not known.
+    template <int dim>
+    ContactValues
+    values_of(const ContactBoundary<dim> &boundary,
+              const Verification<dim>    &verification,
+              const unsigned int          node)
+    {
+      constexpr double nan     = std::numeric_limits<double>::quiet_NaN();
+      const bool       is_held = node == dealii::numbers::invalid_unsigned_int;
+      const double     measure = is_held ? 1. : boundary.nodes[node].measure;
+      ContactValues    values;
+      for (unsigned int d = 0; d < 3; ++d)
+        values.push_back(
+          is_held || d >= dim ? 0. : verification.displacements[node][d]);
+      for (unsigned int d = 0; d < 3; ++d)
+        values.push_back(d >= dim ? 0. :
+                         is_held  ? nan :
+                                    verification.tangential_forces[node][d] /
+                                     measure);
+      for (const ContactScalar &scalar : contact_scalars)
+        values.push_back(is_held ?
+                           (scalar.is_displacement ? 0. : nan) :
+                           scalar.value(verification.nodes[node], measure));
+      return values;
+    }
+
+
+
+    /// Returns the values at a vertex of a face or in the middle of an edge,
+    /// where displacements are not its coefficients.
+    template <int dim>
+    ContactValues
+    values_at(const ContactBoundary<dim>                &boundary,
+              const Verification<dim>                   &verification,
+              const typename ContactBoundary<dim>::Face &face,
+              const unsigned int                         k)
+    {
+      const auto of = [&](const unsigned int vertex) {
+        return values_of(boundary, verification, face.node(vertex));
+      };
+      ContactValues values = of(k);
+      if (k < dim)
+        return values;
+      const ContactValues a = of(simplex_edges[k - dim][0]),
+                          b = of(simplex_edges[k - dim][1]);
+      for (unsigned int c = 0; c < values.size(); ++c)
+        if (c < 3 || (c >= 6 && contact_scalars[c - 6].is_displacement))
+          values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
+      return values;
+    }
+
+
+
+    /// Returns the mean of values at points, without those that are not known.
     ContactValues
     mean(const ContactValues &own, const std::vector<ContactValues> &others)
     {
@@ -291,39 +343,6 @@ namespace Debond
                     const std::string            &file_name,
                     const std::vector<CellField> &more)
   {
-    constexpr double nan       = std::numeric_limits<double>::quiet_NaN();
-    const auto       values_of = [&](const unsigned int node) {
-      const bool    is_held = node == dealii::numbers::invalid_unsigned_int;
-      const double  measure = is_held ? 1. : boundary.nodes[node].measure;
-      ContactValues values;
-      for (unsigned int d = 0; d < 3; ++d)
-        values.push_back(
-          is_held || d >= dim ? 0. : verification.displacements[node][d]);
-      for (unsigned int d = 0; d < 3; ++d)
-        values.push_back(d >= dim ? 0. :
-                         is_held  ? nan :
-                                   verification.tangential_forces[node][d] /
-                                     measure);
-      for (const ContactScalar &scalar : contact_scalars)
-        values.push_back(is_held ?
-                           (scalar.is_displacement ? 0. : nan) :
-                           scalar.value(verification.nodes[node], measure));
-      return values;
-    };
-
-    // In the middle of an edge displacements are not its coefficients.
-    const auto values_at = [&](const auto &face, const unsigned int k) {
-      ContactValues values = values_of(face.node(k));
-      if (k < dim)
-        return values;
-      const ContactValues a = values_of(face.node(simplex_edges[k - dim][0]));
-      const ContactValues b = values_of(face.node(simplex_edges[k - dim][1]));
-      for (unsigned int c = 0; c < values.size(); ++c)
-        if (c < 3 || (c >= 6 && contact_scalars[c - 6].is_displacement))
-          values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
-      return values;
-    };
-
     VtuGrid grid = {dim == 2 ? VtuGrid::CellType::line :
                                VtuGrid::CellType::quadrilateral,
                     2 * (dim - 1)};
@@ -352,7 +371,7 @@ namespace Debond
           std::array<dealii::Point<dim>, dim> corners;
           for (unsigned int k = 0; k < dim; ++k)
             {
-              values[k] = values_at(face, part[k]);
+              values[k] = values_at(boundary, verification, face, part[k]);
               corners[k] =
                 part[k] < dim ?
                   face.vertices[part[k]] :

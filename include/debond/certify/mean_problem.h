@@ -46,27 +46,15 @@ namespace Debond
       return static_cast<unsigned int>(pieces.size());
     }
 
-    /// The means of all sides, then the slopes.
+    /// Returns the means of all sides, then the slopes.
     Eigen::VectorXd
     all(const Eigen::VectorXd &s) const
     {
       const Eigen::VectorXd others = offset + to_others * s;
       Eigen::VectorXd       result(2 * n_sides());
-      for (unsigned int i = 0; i < kept.size(); ++i)
-        result(kept[i]) = s(i);
-      for (unsigned int i = 0; i < eliminated.size(); ++i)
-        result(eliminated[i]) = others(i);
+      result(kept)           = s;
+      result(eliminated)     = others.head(eliminated.size());
       result.tail(n_sides()) = others.tail(n_sides());
-      return result;
-    }
-
-    /// Of the means of all sides those of s.
-    Eigen::VectorXd
-    kept_of(const Eigen::VectorXd &means) const
-    {
-      Eigen::VectorXd result(kept.size());
-      for (unsigned int i = 0; i < kept.size(); ++i)
-        result(i) = means(kept[i]);
       return result;
     }
   };
@@ -131,8 +119,8 @@ namespace Debond
                  std::vector<double>               D) const;
 
   private:
-    /// Nothing if it is not convex in the slopes, or the means do not determine
-    /// the stresses.
+    /// Returns nothing if the problem is not convex in the slopes, or the means
+    /// do not determine the stresses.
     std::optional<MeanProblem>
     try_mean_problem(const std::vector<CertifiedSide> &ranges,
                      const Eigen::VectorXd            &means,
