@@ -19,7 +19,7 @@ namespace Debond
   {
     using boost::interprocess::interprocess_exception;
 
-    /// Of the latest lock of this process, as long as it exists.
+    /// The file of the latest lock of this process, as long as it exists.
     std::string name_of_lock;
 
 

@@ -81,7 +81,7 @@ namespace Debond
 
 
 
-    /// What the paths of the members of a family begin with.
+    /// Returns the beginning of the paths of the members of a family.
     std::string
     prefix_of(const std::string &family)
     {
@@ -90,8 +90,8 @@ namespace Debond
 
 
 
-    /// How many insertions, deletions, substitutions and transpositions of
-    /// neighbours turn one word into the other (Damerau's distance in its
+    /// Counts the insertions, deletions, substitutions and transpositions of
+    /// neighbours that turn one word into the other (Damerau's distance in its
     /// restricted form, in which no part is edited twice).
     std::size_t
     edit_distance(const std::string &s, const std::string &t)
@@ -440,7 +440,7 @@ namespace Debond
 
 
 
-  /// In alphabetical order.
+  /// The sections are in alphabetical order.
   std::vector<std::string>
   ParameterTable::known_sections() const
   {

@@ -232,8 +232,8 @@ namespace Debond
                side.measure;
       }
 
-      /// Of a function of the barycentric coordinates and the displacement
-      /// there, exact up to degree 5.
+      /// Integrates a function of the barycentric coordinates and the
+      /// displacement there, exactly up to degree 5.
       template <typename Function>
       double
       integral(const Function &function) const
@@ -452,7 +452,8 @@ namespace Debond
 
   namespace
   {
-    /// What one's own computations may have lost at J of @p certificate.
+    /// Returns how much one's own computations may have lost at J of
+    /// @p certificate.
     double
     own_rounding(const Certificate &certificate, const double strain_energy)
     {

@@ -57,8 +57,8 @@ namespace Debond
 
 
 
-    /// Of a certificate with stresses of the same mesh: the mean equilibrated
-    /// stress and the gap per area or volume.
+    /// Returns the mean equilibrated stress and the gap per area or volume, if
+    /// the certificate has those of the same mesh.
     template <int dim>
     std::vector<CellField>
     fields_of_cells(const Scene<dim> &scene, const Certificate &certificate)
@@ -93,8 +93,9 @@ namespace Debond
 
 
 
-    /// Where a certificate has the state of bonds: the number of the law's
-    /// branch on which each face is in all minima, -1 where that is not known.
+    /// Returns the number of the law's branch on which each face is in all
+    /// minima, -1 where that is not known, if the certificate has the state of
+    /// bonds.
     template <int dim>
     std::vector<CellField>
     fields_of_faces(const Scene<dim> &scene, const Certificate &certificate)

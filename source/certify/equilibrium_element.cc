@@ -50,8 +50,8 @@ namespace Debond
 
 
 
-    /// Where a corner of the simplex is among those of the part above side
-    /// @p part; dim + 1 for the centroid.
+    /// Returns the place of a corner of the simplex among those of the part
+    /// above side @p part; dim + 1 for the centroid.
     int
     corner_of_part(const int part, const int corner)
     {
@@ -158,7 +158,7 @@ namespace Debond
 
 
 
-    /// The same from the reference simplex: x = a + B y maps sigma to
+    /// Makes that basis from the reference simplex: x = a + B y maps sigma to
     /// B sigma B', which keeps tractions continuous and the divergence zero.
     template <int dim>
     Eigen::MatrixXd

@@ -20,7 +20,7 @@ namespace Debond
     constexpr unsigned int unknowns_of_a_side =
       EquilibriumElement<dim>::unknowns_of_a_side;
 
-    /// Whether both are the same simplex at different places, but for the
+    /// Says whether both are the same simplex at different places, but for the
     /// rounding of coordinates.
     template <int dim>
     bool

@@ -10,8 +10,8 @@ namespace Debond
 {
   namespace
   {
-    /// Where c_0 (1 - t)^2 + 2 c_m t (1 - t) + c_1 t^2 is at a kink, with the
-    /// ends of (0, 1), in their order.
+    /// Returns the t where c_0 (1 - t)^2 + 2 c_m t (1 - t) + c_1 t^2 is at a
+    /// kink, with the ends of (0, 1), in their order.
     std::vector<double>
     pieces_between_kinks(const double               c_0,
                          const double               c_1,

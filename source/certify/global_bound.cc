@@ -20,7 +20,7 @@ namespace Debond
 
 
 
-    /// How far a proof goes, relative to J, which is much less than what meshes
+    /// A proof goes so far, relative to J, which is much less than what meshes
     /// leave, and relative to the interval as it is. That of the first one is
     /// as wide as this, relative to J.
     constexpr double proof_tolerance      = 1e-6;
@@ -50,7 +50,7 @@ namespace Debond
 
     constexpr double least_gain = 0.05;
 
-    /// What another one may save of what the sides lose.
+    /// The part that another one may save of what the sides lose.
     constexpr double part_of_losses = 0.5;
 
 
@@ -129,7 +129,8 @@ namespace Debond
       const BranchAndBoundParameters &proof;
       const Interruption             &interruption;
 
-      /// What is known of the displacements with J at most the upper number.
+      /// The bound and the ranges of the displacements with J at most the upper
+      /// number, as they are known by now.
       GlobalBound known;
 
       /// The latest one, and its means and slopes where it is least.
@@ -148,8 +149,8 @@ namespace Debond
       void
       look(const bool is_quick);
 
-      /// Whether saving what may be saved of what the sides lose would make the
-      /// interval narrower.
+      /// Says whether saving what may be saved of what the sides lose would
+      /// make the interval narrower.
       bool
       losses_matter() const;
     };

@@ -13,15 +13,15 @@ namespace Debond
 {
   namespace
   {
-    /// Of those that are tried, relative to the stiffness of the bonds.
+    /// The least shift that is tried, relative to the stiffness of the bonds.
     constexpr double least_shift = 0.005;
 
 
     /// Larger shifts round the law by little more than nothing.
     constexpr double largest_uncertain_shift = 40.;
 
-    /// What the rounded law is below the law, at the most, as far from a mean
-    /// as a tenth of the distance of the first kink.
+    /// Returns by how much the rounded law is below the law, at the most, as
+    /// far from a mean as a tenth of the distance of the first kink.
     double
     largest_loss(const PiecewiseEnergy &law,
                  const RoundedBranches &rounded,

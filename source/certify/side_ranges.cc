@@ -18,8 +18,8 @@ namespace Debond
 
 
 
-    /// Where displacements of a node can be if the functional of the means is
-    /// at most @p upper; nothing if they cannot.
+    /// Returns the ranges of displacements of a node whose functional of the
+    /// means is at most @p upper; nothing if there are none.
     std::optional<std::vector<CertifiedSide>>
     ranges_of_node(const MeanProblem &problem,
                    const NodeBound   &bound,
@@ -69,7 +69,7 @@ namespace Debond
                 of_slope(i) + of_slopes.row(i).dot(slopes.row(i));
               const double covariance =
                 mixed(i) + of_means.row(i).dot(slopes.row(i));
-              /// Of the mean + xi times the slope.
+              // Of the mean + xi times the slope.
               const auto range_at = [&](const double xi) -> Interval {
                 const double variance = mean_variance + 2. * xi * covariance +
                                         xi * xi * slope_variance;

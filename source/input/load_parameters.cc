@@ -71,7 +71,7 @@ namespace Debond
 
 
 
-    /// Whether a force is the same everywhere, as one that has no place is.
+    /// Says whether a force is the same everywhere, as one without a place is.
     template <int dim>
     bool
     is_constant(const std::string                   &expression,

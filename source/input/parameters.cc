@@ -144,7 +144,7 @@ namespace Debond
 
 
 
-    /// What contact boundaries have of their own.
+    /// Checks the names in entries that contact boundaries have of their own.
     void
     check_contact_boundaries(const Parameters &p, ParameterTable &table)
     {
@@ -165,7 +165,7 @@ namespace Debond
 
 
 
-    /// Bonds that vary.
+    /// Checks bonds that vary.
     void
     check_bonds(const Parameters &p, ParameterTable &table)
     {
@@ -223,7 +223,7 @@ namespace Debond
 
 
 
-    /// Entries that the run does not look at.
+    /// Notes entries that the run does not look at.
     void
     note_entries_without_effect(const Parameters     &p,
                                 const BodyParameters &body,
@@ -295,7 +295,7 @@ namespace Debond
 
 
 
-    /// What cannot be together with quadratic displacements.
+    /// Refuses entries that cannot be together with quadratic displacements.
     void
     check_degree(const Parameters &p, ParameterTable &table)
     {
@@ -316,7 +316,7 @@ namespace Debond
 
 
 
-    /// What is for bonds that break at once.
+    /// Refuses entries that are for bonds that break at once.
     void
     check_softening(const Parameters &p, ParameterTable &table)
     {
@@ -376,7 +376,7 @@ namespace Debond
 
 
 
-    /// What cannot be together with meshes that are refined.
+    /// Refuses entries that cannot be together with meshes that are refined.
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {

@@ -159,7 +159,7 @@ namespace Debond
     {
       std::string name;
 
-      /// Of a node and its measure.
+      /// Gets a node's state and its measure.
       std::function<double(const ContactNodeState &, double)> value;
 
       /// As the displacement, of which edges have coefficients of degree 2.

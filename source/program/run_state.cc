@@ -87,7 +87,8 @@ namespace Debond
 
 
 
-    /// Of a step without its global branch, which comes when the path is whole.
+    /// A step goes without its global branch, which comes when the path is
+    /// whole.
     template <class Archive, int dim>
     void
     exchange(Archive &archive, LoadPathStep<dim> &step)
@@ -139,7 +140,7 @@ namespace Debond
 
 
 
-    /// The values of each entry in two scenes, without their spaces.
+    /// Returns the values of each entry in two scenes, without their spaces.
     std::map<std::string, std::array<std::string, 2>>
     values_of(const std::array<std::string, 2> &scenes)
     {
@@ -161,7 +162,7 @@ namespace Debond
 
 
 
-    /// Whether a run may go on with another value.
+    /// Says whether a run may go on with another value.
     bool
     may_differ(const std::string &entry)
     {

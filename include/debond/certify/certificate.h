@@ -17,7 +17,7 @@
 
 namespace Debond
 {
-  /// What an interval is for.
+  /// The minimum that an interval is for.
   enum class CertifiedMinimum
   {
     global,     ///< the least J
@@ -26,8 +26,8 @@ namespace Debond
 
 
 
-  /// Of the contact sides of each displacement with J at most the upper number,
-  /// those with bonds in a state: their length, at least and at most.
+  /// The length of the contact sides whose bonds are in a state, at least and
+  /// at most, of all displacements with J at most the upper number.
   struct CertifiedLength
   {
     std::string state;
@@ -53,26 +53,25 @@ namespace Debond
     unsigned int n_unknowns = 0; ///< of the equilibrated stresses
     unsigned int n_sides    = 0; ///< of the contact boundary
 
-    /// Of CertifiedMinimum::global, unless J is convex.
+    /// The proof of CertifiedMinimum::global, unless J is convex.
     ProofStatus  proof_status = ProofStatus::proved;
     unsigned int proof_nodes  = 0;
 
-    /// What upper - lower has as a reserve for rounding.
+    /// The reserve for rounding in upper - lower.
     double reserve = 0.;
 
-    /// Of each active cell with the contact sides below it: the parts of upper
-    /// - lower - reserve of the bonds' branches as they are, none of them below
-    /// zero; if branches may change, with what the bound for that loses at the
-    /// sides.
+    /// The parts of upper - lower - reserve of each active cell with the
+    /// contact sides below it, for the bonds' branches as they are, none of
+    /// them below zero; if branches may change, with what the bound for that
+    /// loses at the sides.
     std::vector<double> gaps;
 
-    /// Where there are gaps: the means of the equilibrated stress of the bonds'
-    /// branches as they are, in each active cell; of plane bodies in their
-    /// plane.
+    /// The means of the equilibrated stress in each active cell, for the bonds'
+    /// branches as they are, if there are gaps; of plane bodies in their plane.
     std::vector<dealii::SymmetricTensor<2, 3>> stresses;
 
-    /// Of the contact boundary, of all displacements with J at most `upper`;
-    /// empty unless the bound is for bonds that may break anywhere.
+    /// Ranges on the contact boundary of all displacements with J at most
+    /// `upper`; empty unless the bound is for bonds that may break anywhere.
     std::vector<CertifiedSide>   sides;
     std::vector<CertifiedLength> lengths;
 
@@ -132,7 +131,8 @@ namespace Debond
     Certifier(const CertificateKind                    kind,
               const std::shared_ptr<const Scene<dim>> &scene);
 
-    /// Of the displacement @p u. @p proof: limits of branch and bound.
+    /// Makes that of the displacement @p u. @p proof: limits of branch and
+    /// bound.
     /// @p earlier: of the same scene on another mesh, whose bounds are used if
     /// they are of the least J and of the loads as they are. Throws
     /// EquilibriumError if no bound was found.
@@ -143,7 +143,7 @@ namespace Debond
             const Certificate              *earlier = nullptr) const;
 
   private:
-    /// For bonds that break.
+    /// Makes the bound for bonds that break.
     void
     certify_global(const DofVector                &u,
                    const DofVector                &displacement,
@@ -161,10 +161,10 @@ namespace Debond
     const CertifiedMinimum                  minimum;
     const EquilibriumProblem<dim>           equilibrium;
 
-    /// Of the contact sides.
+    /// The laws of the contact sides.
     std::vector<PiecewiseEnergy> laws;
 
-    /// The same, if branches are not fixed.
+    /// Their trace constants, if branches are not fixed.
     std::vector<double> trace_constants;
   };
 } // namespace Debond

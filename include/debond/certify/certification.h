@@ -22,7 +22,7 @@ namespace Debond
   class Certification : public RefinementGoal<dim>
   {
   public:
-    /// Of the scene on its first mesh. @p target: width relative to J, 0 for
+    /// Takes the scene on its first mesh. @p target: width relative to J, 0 for
     /// any; @p proof: limits of branch and bound. Throws BadInput if the scene
     /// can have no certificate.
     Certification(const CertificateKind                    kind,
@@ -30,16 +30,15 @@ namespace Debond
                   const BranchAndBoundParameters          &proof,
                   const std::shared_ptr<const Scene<dim>> &scene);
 
-    /// Null if no width is asked for.
+    /// Returns null if no width is asked for.
     RefinementGoal<dim> *
     goal()
     {
       return target > 0. ? this : nullptr;
     }
 
-    /// Of bonds that may break, which takes longer, as long as the interval for
-    /// their branches as they are is not narrow enough only that, unless
-    /// @p is_last.
+    /// Makes the interval for bonds that may break, which takes longer, only if
+    /// that for their branches as they are is narrow enough, or @p is_last.
     GoalOnMesh
     look(const std::shared_ptr<const Scene<dim>> &scene,
          const SolveResult                       &result,
@@ -48,8 +47,8 @@ namespace Debond
     double
     n_unknowns(const double n_cells) const override;
 
-    /// Of a success on the last mesh, which has none as a goal. A note of
-    /// @p result says why there is none.
+    /// Makes that of a success on the last mesh, unless it has one as a goal. A
+    /// note of @p result says why there is none.
     void
     certify(const std::shared_ptr<const Scene<dim>> &scene,
             RunResult<dim>                          &result);
@@ -57,7 +56,7 @@ namespace Debond
     void
     report(Record &record) const;
 
-    /// A table of the sides. Keeps references.
+    /// Returns a table of the sides. Keeps references.
     std::vector<OutputFile>
     files(const OutputParameters &output, const Scene<dim> &scene) const;
 

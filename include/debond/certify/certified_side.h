@@ -12,9 +12,9 @@
 
 namespace Debond
 {
-  /// What each admissible displacement with J at most some value has on a side
-  /// of the contact boundary: of its normal displacement u_nu and the linear
-  /// function p that is nearest to it in L2 of the side.
+  /// The ranges that each admissible displacement with J at most some value has
+  /// on a side of the contact boundary: those of its normal displacement u_nu
+  /// and of the linear function p that is nearest to it in L2 of the side.
   struct CertifiedSide
   {
     std::array<dealii::Point<2>, 2> ends;

@@ -57,14 +57,14 @@ namespace Debond
     elastic_functional(const ElasticFields<dim> &fields,
                        const DofVector          &u) const;
 
-    /// Of each active cell how much work tractions on its sides may do that is
-    /// not in the loads here, nothing if all are linear: by Cauchy's inequality
-    /// for the strain energy of u and the trace constant of a rectangle above
-    /// the side, so that it is an estimate.
+    /// Returns of each active cell how much work tractions on its sides may do
+    /// that is not in the loads here, nothing if all are linear: by Cauchy's
+    /// inequality for the strain energy of u and the trace constant of a
+    /// rectangle above the side, so that it is an estimate.
     std::vector<double>
     load_rests(const ElasticFields<dim> &fields, const DofVector &u) const;
 
-    /// Of each active cell
+    /// Returns of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
     /// of u as above and of @p stresses.
     std::vector<double>
@@ -72,7 +72,7 @@ namespace Debond
                       const DofVector                    &u,
                       const std::vector<Eigen::VectorXd> &stresses) const;
 
-    /// What elimination may have lost of
+    /// Returns how much elimination may have lost of
     ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
     ///                       + the work of sigma along what is prescribed
     /// of a condensation with @p weights to rounding: four times by how much
@@ -82,7 +82,7 @@ namespace Debond
                 const Eigen::VectorXd     &kept,
                 const std::vector<double> &weights = {}) const;
 
-    /// Of each active cell the mean of a stress without p.
+    /// Returns the mean of a stress without p in each active cell.
     std::vector<dealii::SymmetricTensor<2, dim>>
     mean_stresses(const std::vector<Eigen::VectorXd> &stresses) const;
 
@@ -97,7 +97,7 @@ namespace Debond
 
     const ByRegion<Material> materials;
 
-    /// Of the active cells; those that are the same share one.
+    /// The elements of the active cells; those that are the same share one.
     std::vector<std::shared_ptr<const Element>> elements;
   };
 
@@ -120,8 +120,8 @@ namespace Debond
 
 
 
-  /// Of each active cell int epsilon(u) : C epsilon(u), u the Cartesian values
-  /// at the nodes.
+  /// Returns int epsilon(u) : C epsilon(u) of each active cell, u being the
+  /// Cartesian values at the nodes.
   template <int dim>
   std::vector<double>
   strain_energies(const ElasticFields<dim> &fields, const DofVector &u);

@@ -17,24 +17,24 @@ namespace Debond
   {
     double lower = -std::numeric_limits<double>::infinity();
 
-    /// What it is smaller by for what elimination may have lost to rounding.
+    /// The part of it that is a reserve for what elimination may have lost to
+    /// rounding.
     double rounding = 0.;
 
-    /// Of the branch and bound that has it.
+    /// The end of the branch and bound that has it.
     ProofStatus  status = ProofStatus::no_bound;
     unsigned int nodes  = 0; ///< of all
 
     std::vector<CertifiedSide> sides;
 
-    /// What each of them loses where the best bound is the least; empty if
+    /// The losses of the sides where the best bound is the least; empty if
     /// there is none.
     std::vector<double> losses;
   };
 
 
 
-  /// trace_constant() of the rectangles and triangles above the contact sides;
-  /// in a crossed parallelogram it is that of the triangle above the side.
+  /// Returns trace_constant() of the triangles above the contact sides.
   std::vector<double>
   side_constants(const EquilibriumProblem<2> &equilibrium,
                  const ByRegion<Material>    &materials,

@@ -90,29 +90,31 @@ namespace Debond
       return laws;
     }
 
-    /// Large enough for the law not to be rounded at the mean, if that can be
-    /// with the given multiple of the bonds' stiffness.
+    /// Returns shifts that are large enough for the law not to be rounded at
+    /// the mean, if that can be with the given multiple of the bonds'
+    /// stiffness.
     std::vector<double>
     shifts_for_means(const Eigen::VectorXd &means, const double multiple) const;
 
-    /// Those that lose least: large enough for the piece of the law to be
-    /// certain, if that can be, or for means and slopes near the given ones to
-    /// lose little by stiffness, slopes and rounding together, but at least the
-    /// given multiple of the bonds' stiffness.
+    /// Returns the shifts that lose least: large enough for the piece of the
+    /// law to be certain, if that can be, or for means and slopes near the
+    /// given ones to lose little by stiffness, slopes and rounding together,
+    /// but at least the given multiple of the bonds' stiffness.
     std::vector<double>
     shifts_for_ranges(const std::vector<CertifiedSide> &ranges,
                       const Eigen::VectorXd            &means,
                       const Eigen::VectorXd            &slopes,
                       const double                      least_multiple) const;
 
-    /// What the sides lose at these means and slopes: by stiffness, and where
-    /// no piece is certain by slopes and the rounded law.
+    /// Returns how much the sides lose at these means and slopes: by stiffness,
+    /// and where no piece is certain by slopes and the rounded law.
     std::vector<double>
     losses(const MeanProblem     &problem,
            const Eigen::VectorXd &means_and_slopes) const;
 
-    /// D is made smaller until there is one. At @p means it
-    /// measures its rounding. Throws EquilibriumError if there is none.
+    /// Returns the problem of shifts D, which are made smaller until there is
+    /// one. At @p means it measures its rounding. Throws EquilibriumError if
+    /// there is none.
     MeanProblem
     mean_problem(const std::vector<CertifiedSide> &ranges,
                  const Eigen::VectorXd            &means,
@@ -126,7 +128,7 @@ namespace Debond
                      const Eigen::VectorXd            &means,
                      const std::vector<double>        &D) const;
 
-    /// The largest shift of a side: at least a tenth of an element's
+    /// Returns the largest shift of a side: at least a tenth of an element's
     /// stiffness stays.
     double
     available(const unsigned int i) const

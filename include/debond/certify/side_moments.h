@@ -23,7 +23,7 @@ namespace Debond
   template <int dim>
   struct SideTraction
   {
-    /// Of the linear one with the same moments, in the order of the corners.
+    /// The linear one with the same moments, in the order of the corners.
     std::array<dealii::Tensor<1, dim>, dim> at_corners;
 
     /// The mean square of what is not linear, 0 if that is rounding.
