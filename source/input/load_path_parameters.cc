@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace Debond
@@ -105,26 +104,28 @@ namespace Debond
   void
   bind_load_path(LoadPathParameters &load_path, ParameterTable &table)
   {
-    table.declare(
+    const auto bind_factors = [&table](const std::string   &path,
+                                       std::vector<double> &factors,
+                                       const std::string   &documentation) {
+      table.declare(
+        path,
+        "",
+        Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
+                "commas"),
+        documentation,
+        "none",
+        [&factors](const std::string &text) {
+          factors = parse_load_factors(text);
+        });
+    };
+    bind_factors(
       "Load path/Factors",
-      "",
-      Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
-              "commas"),
-      "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs another method than euclidean bundle",
-      "none",
-      [&load_path](const std::string &text) {
-        load_path.factors = parse_load_factors(text);
-      });
-    table.declare(
+      load_path.factors,
+      "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs another method than euclidean bundle");
+    bind_factors(
       "Load path/Displacement factors",
-      "",
-      Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
-              "commas"),
-      "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads",
-      "none",
-      [&load_path](const std::string &text) {
-        load_path.displacement_factors = parse_load_factors(text);
-      });
+      load_path.displacement_factors,
+      "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads");
     table.bind(
       "Load path/Dead loads",
       load_path.dead_loads,
@@ -217,11 +218,11 @@ namespace Debond
   std::string
   LoadPathParameters::name(const LoadFactors &at_step) const
   {
-    std::ostringstream text;
-    text << (moves_only() ? "displacement factor " : "factor ")
-         << varying(at_step);
-    if (!moves_only() && !displacement_factors.empty())
-      text << ", displacement factor " << at_step.displacements;
-    return text.str();
+    const bool moves = moves_only();
+    return words(moves ? "displacement factor " : "factor ",
+                 varying(at_step),
+                 moves || displacement_factors.empty() ?
+                   "" :
+                   words(", displacement factor ", at_step.displacements));
   }
 } // namespace Debond

@@ -75,6 +75,11 @@ namespace Debond
     const std::vector<Entry> &
     entries()
     {
+      const auto one = [](double Material::*const number) {
+        return [number](Material &material, const std::string &text) {
+          read_number(text, material.*number);
+        };
+      };
       const auto three = [](Three Orthotropy::*const numbers) {
         return [numbers](Material &material, const std::string &text) {
           set_orthotropy(text, numbers, material);
@@ -87,17 +92,13 @@ namespace Debond
          quantity(),
          "E",
          "force per area",
-         [](Material &material, const std::string &text) {
-           read_number(text, material.young_modulus);
-         }},
+         one(&Material::young_modulus)},
         {"Poisson ratio",
          "0.33",
          number(),
          "nu, in (-1, 1) in plane stress and in (-1, 0.5) in plane strain and 3D",
          "none",
-         [](Material &material, const std::string &text) {
-           read_number(text, material.poisson_ratio);
-         }},
+         one(&Material::poisson_ratio)},
         {"Young moduli",
          "",
          axes,
@@ -121,9 +122,7 @@ namespace Debond
          number(),
          "From x to axis 1 of the material, about z, which is axis 3",
          "degrees",
-         [](Material &material, const std::string &text) {
-           read_number(text, material.axis_angle);
-         }},
+         one(&Material::axis_angle)},
         {"Thermal expansion",
          "0",
          three_numbers("a number, or three", true),

@@ -14,35 +14,37 @@ namespace Debond
 
     const std::string xyz = "xyz";
     CsvTable          table;
-    const auto add_of_node = [&](const std::string &title, const auto &value) {
-      table.add(title, boundary.nodes, value);
-    };
-    const auto add = [&](const std::string &title, const auto &value) {
-      table.add(title, verification.nodes, value);
-    };
+    const auto       &nodes = verification.nodes;
     for (unsigned int d = 0; d < dim; ++d)
-      add_of_node({xyz[d]}, [d](const auto &node) { return node.position[d]; });
-    add("u_nu", &ContactNodeState::u_nu);
-    add("normal_force", &ContactNodeState::normal_force);
-    add_of_node("normal_force_density", [&](const auto &node) {
+      table.add({xyz[d]}, boundary.nodes, [d](const auto &node) {
+        return node.position[d];
+      });
+    table.add("u_nu", nodes, &ContactNodeState::u_nu);
+    table.add("normal_force", nodes, &ContactNodeState::normal_force);
+    table.add("normal_force_density", boundary.nodes, [&](const auto &node) {
       const auto i = &node - boundary.nodes.data();
       return verification.nodes[i].normal_force / node.measure;
     });
-    add("allowed_lower",
-        [](const auto &node) { return node.allowed_force.lower; });
-    add("allowed_upper",
-        [](const auto &node) { return node.allowed_force.upper; });
-    add("violation", &ContactNodeState::violation);
-    add("state",
-        [&](const auto &node) { return verification.name(node.state); });
+    table.add("allowed_lower", nodes, [](const auto &node) {
+      return node.allowed_force.lower;
+    });
+    table.add("allowed_upper", nodes, [](const auto &node) {
+      return node.allowed_force.upper;
+    });
+    table.add("violation", nodes, &ContactNodeState::violation);
+    table.add("state", nodes, [&](const auto &node) {
+      return verification.name(node.state);
+    });
     for (unsigned int d = 0; d < dim; ++d)
       table.add(std::string("tangential_force_") + xyz[d],
                 verification.tangential_forces,
                 [d](const auto &force) { return force[d]; });
-    add("bond_stiffness", &ContactNodeState::bond_stiffness);
-    add("bond_threshold", &ContactNodeState::bond_threshold);
-    add("damage", &ContactNodeState::damage);
-    add_of_node("initial_gap", [](const auto &node) { return node.gap; });
+    table.add("bond_stiffness", nodes, &ContactNodeState::bond_stiffness);
+    table.add("bond_threshold", nodes, &ContactNodeState::bond_threshold);
+    table.add("damage", nodes, &ContactNodeState::damage);
+    table.add("initial_gap", boundary.nodes, [](const auto &node) {
+      return node.gap;
+    });
     table.write(file_name);
   }
 
@@ -53,18 +55,17 @@ namespace Debond
                 const std::optional<double>        &found,
                 const std::string                  &file_name)
   {
-    CsvTable   table;
-    const auto add = [&](const std::string &title, const auto &value) {
-      table.add(title, history, value);
-    };
-    add("iteration", &BundleIteration::iteration);
-    add("functional", &BundleIteration::functional);
-    add("v", &BundleIteration::v);
-    add("t_L", &BundleIteration::t_L);
-    add("t_R", &BundleIteration::t_R);
-    add("bundle_size", &BundleIteration::bundle_size);
-    add("qp_steps", &BundleIteration::qp_steps);
-    add("kind", [](const auto &step) { return to_string(step.kind); });
+    CsvTable table;
+    table.add("iteration", history, &BundleIteration::iteration);
+    table.add("functional", history, &BundleIteration::functional);
+    table.add("v", history, &BundleIteration::v);
+    table.add("t_L", history, &BundleIteration::t_L);
+    table.add("t_R", history, &BundleIteration::t_R);
+    table.add("bundle_size", history, &BundleIteration::bundle_size);
+    table.add("qp_steps", history, &BundleIteration::qp_steps);
+    table.add("kind", history, [](const auto &step) {
+      return to_string(step.kind);
+    });
     if (found)
       table.add_row(history.size() + 1, *found, "", "", "", "", "", "search");
     table.write(file_name);
@@ -77,16 +78,17 @@ namespace Debond
                 const std::optional<double>                  &found,
                 const std::string                            &file_name)
   {
-    CsvTable   table;
-    const auto add = [&](const std::string &title, const auto &value) {
-      table.add(title, history, value);
-    };
-    add("iteration", &MajoriseMinimiseIteration::iteration);
-    add("functional", &MajoriseMinimiseIteration::functional);
-    add("residual", &MajoriseMinimiseIteration::residual);
-    add("active_set_steps", &MajoriseMinimiseIteration::active_set_steps);
-    add("linear_iterations", &MajoriseMinimiseIteration::linear_iterations);
-    add("contact_nodes", &MajoriseMinimiseIteration::n_active);
+    CsvTable table;
+    table.add("iteration", history, &MajoriseMinimiseIteration::iteration);
+    table.add("functional", history, &MajoriseMinimiseIteration::functional);
+    table.add("residual", history, &MajoriseMinimiseIteration::residual);
+    table.add("active_set_steps",
+              history,
+              &MajoriseMinimiseIteration::active_set_steps);
+    table.add("linear_iterations",
+              history,
+              &MajoriseMinimiseIteration::linear_iterations);
+    table.add("contact_nodes", history, &MajoriseMinimiseIteration::n_active);
     if (found)
       table.add_row(history.size() + 1, *found);
     table.write(file_name);
@@ -98,15 +100,12 @@ namespace Debond
   write_history(const std::vector<ProofProgress> &history,
                 const std::string                &file_name)
   {
-    CsvTable   table;
-    const auto add = [&](const std::string &title, const auto &value) {
-      table.add(title, history, value);
-    };
-    add("nodes", &ProofProgress::nodes);
-    add("open", &ProofProgress::open);
-    add("lower_bound", &ProofProgress::lower);
-    add("functional", &ProofProgress::upper);
-    add("seconds", &ProofProgress::seconds);
+    CsvTable table;
+    table.add("nodes", history, &ProofProgress::nodes);
+    table.add("open", history, &ProofProgress::open);
+    table.add("lower_bound", history, &ProofProgress::lower);
+    table.add("functional", history, &ProofProgress::upper);
+    table.add("seconds", history, &ProofProgress::seconds);
     table.write(file_name);
   }
 
