@@ -139,7 +139,7 @@ namespace Debond
                   gap == scene.supports().gaps.end() ? nullptr :
                                                        gap->second.value.get(),
                   largest);
-        law_of_side(face.vertices, face.id, scene);
+        law_of_side<dim>(face.vertices, face.id, scene);
       }
   }
 
@@ -440,7 +440,7 @@ namespace Debond
     , equilibrium(equilibrium_problem(*scene))
   {
     for (const SideOf<dim> &side : equilibrium.mesh.contact_sides)
-      laws.push_back(law_of_side(side.corners, side.id, *scene));
+      laws.push_back(law_of_side<dim>(side.corners, side.id, *scene));
     if constexpr (dim == 2)
       if (minimum == CertifiedMinimum::global &&
           scene->law().branches().size() > 1)
