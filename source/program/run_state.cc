@@ -241,7 +241,7 @@ namespace Debond
     boost::archive::binary_iarchive archive(content);
     exchange(archive, state);
 
-    for (const auto &[name, values] : values_of({state.scene, scene}))
+    for (const auto &[name, values] : values_of({{state.scene, scene}}))
       if (!may_differ(name) && values[0] != values[1])
         throw BadInput({file_name + " is of another scene: " + name + " was " +
                         values[0] + " and is " + values[1] +
