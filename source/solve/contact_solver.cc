@@ -20,7 +20,9 @@ namespace Debond
     /// Contact boundaries with more nodes take their start from coarser ones.
     constexpr unsigned int coarsest_contact_nodes = 50;
 
-    /// On coarser meshes, where the time for a factorisation does not count.
+    /// The number of unknowns up to which a coarser mesh is factorised for the
+    /// start: there a factorisation takes a small part of the time of the
+    /// finest mesh, even in 3D.
     constexpr double largest_coarse_factorisation = 3e4;
 
 
@@ -35,6 +37,9 @@ namespace Debond
       start_mpi();
       const auto &unknowns = scene.problem().unknowns();
       const auto &A        = scene.problem().distributed_matrix();
+      // Geometric levels need the prolongations only; coarse matrices are
+      // products P'AP. Other bodies have levels of aggregates, and these have
+      // to contain the rigid motions, which smoothers hardly change.
       if (has_levels)
         return std::make_unique<TruncatedMultigrid>(
           A, dim, prolongations(scene.body(), unknowns));
@@ -58,6 +63,9 @@ namespace Debond
       const ElasticProblem<dim> &problem = scene.problem();
       if (choice.linear_solver != LinearSolver::multigrid)
         return condense_to_contact(problem, scene.adhesion());
+      // The columns of S = A_cc - A_ci A_ii^{-1} A_ic are products with
+      // solutions of A_ii. The contact normals are held in them, so that
+      // A_ii is definite even where only bonds hold the body.
       const Stage                 stage("condensation by multigrid");
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &normals  = unknowns.contact().normal_dofs();
@@ -95,6 +103,8 @@ namespace Debond
       void
       start_from(const Eigen::VectorXd &point, const DofVector &) override
       {
+        // A point from another mesh or load may miss s <= 0 by its
+        // interpolation.
         s = point.cwiseMin(0.);
       }
 
@@ -107,6 +117,10 @@ namespace Debond
         if (is_by_bundle || problem.unknowns().has_gap() ||
             free_motions.cols() > 0)
           return;
+        // Active sets and fronts of bonds move by few nodes a step. From
+        // subspaces with half as many nodes each the finest one needs one or
+        // two systems; the minimum that is found may be another one than that
+        // of slow loading from rest.
         s = coarse_start({whole.schur_complement(),
                           whole.load(),
                           scene.adhesion()},
@@ -125,10 +139,15 @@ namespace Debond
                        whole :
                        at_factors(whole, problem, bonds, factors));
         ContactMinimum result;
-        // Without loads the bundle's tolerance has nothing to be relative to,
-        // and without nodes there is no metric.
+        // The bundle's epsilon_s is a part of the energy of the body without
+        // contact. Without loads there is none, and without contact nodes there
+        // is no metric S; majorise-minimise then ends at once.
         if (is_by_bundle && s.size() > 0 && here->energy_without_contact() > 0.)
           return by_bundle(parameters.energy_bundle, bonds, progress);
+        // Along motions that only bonds hold, elimination leaves rounding in
+        // N'g, which would lift the body or press it on; g gets the exact
+        // resultants R'f of the loads. The proximal terms of these motions are
+        // scaled by the body's stiffness.
         const Eigen::VectorXd g =
           load_at_contact(problem, *here, factors, free_motions);
         CondensedProblem condensed(whole.schur_complement(),
@@ -189,6 +208,8 @@ namespace Debond
           load,
           normals,
           bonds);
+        // The stop criterion of the paper, v_k >= -epsilon_s, relative to the
+        // energy, so that it does not depend on the units of the scene.
         parameters.epsilon_s *= here->energy_without_contact();
         MetricDirection      direction(S, bonds, parameters.bundle_size);
         DofVector            x(s.begin(), s.end());
@@ -205,8 +226,11 @@ namespace Debond
         ContactMinimum result;
         result.status     = bundle.status;
         result.functional = bundle.functional;
-        result.residual   = bundle.v;
-        result.message    = bundle.message;
+        // The log of an iteration has the same columns for all methods: v_k
+        // takes the place of the residual, and QP steps that of active set
+        // steps.
+        result.residual = bundle.v;
+        result.message  = bundle.message;
         for (const BundleIteration &iteration : bundle.history)
           result.history.push_back({iteration.iteration,
                                     iteration.functional,
@@ -253,6 +277,8 @@ namespace Debond
         const auto              &unknowns = problem.unknowns();
         const ContactSpace<dim> &contact  = unknowns.contact();
         DofVector                v        = start;
+        // Interpolation from a coarser mesh may go through the foundation: what
+        // is above zero of s is taken away from the normal displacement alone.
         contact.add_normal(-contact.trace(v).cwiseMax(0.), v);
         u = distribute(v,
                        unknowns.dof_handler().locally_owned_dofs(),
@@ -265,6 +291,9 @@ namespace Debond
       start_from_coarser(const SolverParameters &parameters,
                          SolveResult            &result) override
       {
+        // This mesh decides which of the minima is found, so it is the finest
+        // one that can have the whole search. Its proof would say nothing about
+        // the finest mesh.
         std::shared_ptr<const Body<dim>> body = scene.body().coarser();
         while (body && dim * body->n_vertices() > largest_coarse_factorisation)
           body = body->coarser();
@@ -283,6 +312,8 @@ namespace Debond
         result.notes                   = start.notes;
         result.minimum                 = start.minimum;
         result.minimum.proof_attempted = false;
+        // Even a failure leaves a displacement that is nearer to the minimum
+        // than rest, so it is used, and a note says so.
         if (!can_be_verified(start.status))
           result.notes.push_back(
             "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
@@ -301,8 +332,8 @@ namespace Debond
                Progress                    &progress) override
       {
         const DofVector load = problem.load(factors);
-        // Then rest is the minimum, and residuals have nothing to be relative
-        // to on the way.
+        // Without a load the body at rest is the minimum. On the way from
+        // another state residuals would have nothing to be relative to.
         if (load.all_zero())
           u = 0.;
         DisplacementProblem minimised(
@@ -349,6 +380,7 @@ namespace Debond
   std::unique_ptr<ContactSolver<dim>>
   make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene)
   {
+    // Both are one interface to the caller, but only the first one has S and g.
     if (choice.is_condensed)
       return std::make_unique<CondensedSolver<dim>>(choice, scene);
     return std::make_unique<MultigridSolver<dim>>(scene, choice.has_levels);

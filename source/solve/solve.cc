@@ -33,6 +33,10 @@ namespace Debond
                               Progress                       &progress,
                               SolveResult                    &result)
     {
+      // The method of the paper's Section 4 works on J_n itself, with all
+      // unknowns w of the lifting u = w + G. Its functional has no constant, so
+      // the energy of what is prescribed, 1/2 <A G, G> - <f, G> and that of the
+      // bonds at w = 0, is added to all values afterwards.
       const double energy =
         prescribed_energy(scene.problem(), scene.adhesion());
       result.u = start != nullptr ? *start : scene.start();
@@ -46,8 +50,9 @@ namespace Debond
       add_bundle_result(bundle, result);
       const double strain_energy =
         scene.problem().fields().strain_energy(result.u);
-      // What foundation and supports bear without any displacement leaves a v_k
-      // of rounding.
+      // The stop tolerance epsilon_s is an energy, so v_k is judged relative to
+      // the strain energy. What foundation and supports bear without any
+      // displacement leaves a v_k of rounding, for which there is no scale.
       if (strain_energy > 0.)
         result.relative_descent = std::abs(result.criterion) / strain_energy;
     }
@@ -66,6 +71,9 @@ namespace Debond
     {
       const dealii::Timer   timer;
       const Eigen::VectorXd followed = solver.point();
+      // Operations are counted instead of seconds, so that the result does not
+      // depend on how busy the machine is. The term with n^3 lets the limit
+      // grow with the cost of a factorisation of S, which each trial needs.
       if (parameters.search == BondSearchChoice::automatic)
         parameters.search_operations =
           least_search_operations + 0.2 * std::pow(double(followed.size()), 3.);
@@ -73,7 +81,10 @@ namespace Debond
       result.minimum    = find_better_minimum(
         parameters, scene.adhesion(), *solver.condensed(), interruption, s);
       result.parts["search and proof"] = timer.wall_time();
-      result.is_replaced               = s != followed;
+      // The energies of both states are wanted, that of the start before the
+      // solver moves on from it: adaptive refinement must not take what a
+      // search has found for what a finer mesh has gained.
+      result.is_replaced = s != followed;
       if (!result.is_replaced)
         return;
       result.functional_from_start =
@@ -94,6 +105,11 @@ namespace Debond
       scene.problem().unknowns().held_by_contact().names;
     if (motions.empty())
       return;
+    // Rigid motions that only bonds hold make A singular, and J may fall
+    // without end once these bonds have broken. Only majorise-minimise can tell
+    // that (its proximal steps come to repeat one rigid motion); a bundle
+    // method would go on without end, and a search or a proof of a global
+    // minimum would look for what need not exist.
     const ProblemParameters &problem = scene.parameters();
     const auto               refuse  = [&](const std::string &entry,
                             const std::string &wanted) {
@@ -135,10 +151,17 @@ namespace Debond
     const bool is_held = unknowns.held_by_contact().motions.empty();
     progress.announce(choice.is_condensed ? "factorisation" : "multigrid",
                       unknowns.n_free_dofs());
+    // Either J = c_0 + 1/2 s'S s - g's + Phi(s) on the contact normals alone,
+    // which takes a factorisation of A or a multigrid solution for each of
+    // them, or J on all unknowns by truncated multigrid. The second has neither
+    // S nor g, and so no search and no proof.
     const auto                solver    = make_contact_solver(choice, scene);
     const Condensation *const condensed = solver->condensed();
     result.parts[condensed != nullptr ? "condensation" : "multigrid setup"] =
       timer.wall_time();
+    // Data that overflow in double precision show in c_0 first. Comparisons
+    // with a NaN are all false, so that the iteration would end with a message
+    // about something else.
     if (condensed != nullptr && !std::isfinite(condensed->energy_at_zero()))
       {
         result.status  = SolverStatus::not_finite;
@@ -156,6 +179,8 @@ namespace Debond
       solver->start_from_coarser(parameters, result);
     if (condensed == nullptr)
       result.parts["coarser meshes"] = timer.wall_time();
+    // The whole load is the factor 1; load paths call the same solver with
+    // others.
     const ContactMinimum minimum =
       solver->minimise(1., scene.adhesion(), parameters, progress);
     if (minimum.bundle)
@@ -164,8 +189,10 @@ namespace Debond
       add_majorise_result(minimum, result);
     result.parts["contact"] = timer.wall_time();
 
-    // Where nothing else holds the body J may fall without end, and there is no
-    // search; without S and g it was done on a coarser mesh.
+    // The search starts from a minimum only. Where bonds alone hold the body
+    // there is none, since J may fall without end; without S and g it was done
+    // on the coarser mesh that gave the start, and a note says what that leaves
+    // open.
     const bool is_minimum = can_be_verified(result.status);
     if (is_minimum && condensed != nullptr && !is_held)
       result.minimum.kind =
@@ -180,6 +207,10 @@ namespace Debond
         "Solver/Linear solver = direct it is done on the finest one");
 
     timer.restart();
+    // The other unknowns follow from s at equilibrium, u_i = A_ii^{-1} (f_i -
+    // A_ic s). What rounding has done to them is repaired where it matters;
+    // only then is the condition of S of interest as well, and of a
+    // semidefinite S there is none.
     result.u                  = solver->displacement();
     result.parts["expansion"] = timer.wall_time();
     // On small meshes the estimate takes 2 % of the solve.
@@ -200,6 +231,8 @@ namespace Debond
         const bool              terminal,
         const DofVector        *start)
   {
+    // The terminal's line of progress ends with the braces, before anything
+    // else is printed.
     SolveResult result;
     {
       Progress progress(out, terminal);
@@ -209,6 +242,10 @@ namespace Debond
       else
         solve_contact(choice, parameters, scene, start, progress, result);
     }
+    // Multigrid that stagnates says nothing about the scene, since materials or
+    // cells may be too much for its smoother. So a factorisation begins anew,
+    // from the given start and not from where multigrid was left, and the
+    // reader is told.
     if (const auto direct =
           factorisation_instead(scene, parameters, choice, result.status))
       {
@@ -217,17 +254,25 @@ namespace Debond
         result.notes.push_back(note);
         return result;
       }
+    // Without a search the word follows from the state of the bonds alone.
     if (!choice.is_condensed)
       result.minimum.kind =
         kind_without_search(scene.adhesion(), scene.contact_trace(result.u));
+    // J is summed up from the strains and not from A u, whose rows nearly
+    // cancel; this keeps some three digits more. A body that comes off has no
+    // J.
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);
+    // The bounds are those of the condensed problem in double precision. They
+    // are moved by what separates that from the J above, so that they hold for
+    // it.
     if (result.minimum.proof_attempted)
       round_outwards(result.functional,
                      rounding_of_energy(scene.problem(), 1., result.u),
                      result.minimum);
-    // Where nothing lower was found one integral over the cells does.
+    // Where nothing lower was found, the state of the start is the result, and
+    // its J needs no second integral over the cells.
     if (choice.is_condensed && !result.is_replaced &&
         (result.minimum.search_trials > 0 || result.minimum.proof_attempted))
       result.functional_from_start = result.functional;

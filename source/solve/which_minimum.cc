@@ -27,7 +27,8 @@ namespace Debond
     /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
-    /// Of the coarsest space that says where starts are in contact.
+    /// The nodes of the coarsest space on which active sets of starts are
+    /// guessed.
     constexpr unsigned int guess_nodes = 50;
 
 
@@ -45,6 +46,8 @@ namespace Debond
       Eigen::VectorXd mean(adhesion.n_nodes());
       for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
         mean(i) = adhesion.points().bonds_at(i).stretch;
+      // A coarse bond stands for the fine ones below it; its stretch is their
+      // mean, weighted by the entries of P, which are not negative.
       for (const Eigen::SparseMatrix<double> &P : prolongations)
         mean = (P.transpose() * mean)
                  .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
@@ -95,9 +98,11 @@ namespace Debond
                                  stretches(adhesion)))
         , work(parameters.search_operations)
       {
-        // What the bonds can change in J: at most the most that they can take
-        // up, and no more than the contact nodes gain without foundation and
-        // bonds, 1/2 g'S^{-1}g.
+        // The scale of the gap: what the bonds can change in J. That is at most
+        // what they can take up when all of them break, and at most what the
+        // contact nodes gain without foundation and bonds, 1/2 g'S^{-1}g. |J|
+        // itself would hide bonds that matter little beside the energy of the
+        // body.
         result.energy_of_bonds =
           std::min(condensed.energy_of_kept(), lumped.largest_value());
         result.search_nodes = static_cast<unsigned int>(s.size());
@@ -107,14 +112,20 @@ namespace Debond
       search()
       {
         const Stage stage("search for a lower minimum");
+        // A trial costs a factorisation of S, n^3/3 operations. Beyond this
+        // size the fronts are sought on a coarser contact mesh.
         if (s.size() <= largest_automatic_search)
           search_all_nodes();
         else
           search_coarse_nodes();
-        // Full is what automatic does, and more.
+        // The full search includes what was done so far and has no limit of
+        // moves. A state that is proved needs none.
         if (parameters.search == BondSearchChoice::full &&
             result.kind != MinimumKind::global)
           search_nodes({});
+        // What a limit of work has cut off has not tried all its moves, so that
+        // "best known" would claim too much; then only the state of the bonds
+        // counts.
         const bool is_cut =
           work.requested() && result.kind != MinimumKind::global;
         if (is_cut || (result.kind != MinimumKind::best_known &&
@@ -122,6 +133,8 @@ namespace Debond
           result.kind = kind_without_search(adhesion, s, &condensed);
         if (!is_cut || interruption.requested())
           return;
+        // The limit stops branch and bound in the way a signal does. Only the
+        // signal is to be called an interruption.
         if (result.proof_status == ProofStatus::interrupted)
           result.proof_status = ProofStatus::node_limit;
         result.notes.push_back(
@@ -138,20 +151,25 @@ namespace Debond
         const Stage  stage("proof");
         const double functional = condensed_functional(condensed, adhesion, s);
         BranchAndBoundParameters limits = proof_limits();
-        limits.maximum_bytes            = memory_left(parameters.memory_limit);
+        // Nodes of the tree that wait keep their intervals. Branch and bound
+        // ends with a valid gap before they take the memory that is left.
+        limits.maximum_bytes = memory_left(parameters.memory_limit);
         const BranchAndBoundResult proof =
           branch_and_bound(limits, lumped_problem(), s);
-        // That of the search stays if there is one.
+        // The search may have proved the result already. A second proof that a
+        // limit has ended must not take that away.
         if (result.kind != MinimumKind::global ||
             proof.status == ProofStatus::proved)
           add_proof(proof);
         result.proof_history = proof.history;
+        // Branch and bound knows 1/2 s'S s - g's + Phi(s); J has c_0 besides.
         for (ProofProgress &progress : result.proof_history)
           {
             progress.lower += condensed.energy_at_zero();
             progress.upper += condensed.energy_at_zero();
           }
-        // A rounding in J is no better minimum.
+        // A state that is lower by less than the tolerance differs in rounding,
+        // and moving to it would only shake the result.
         if (proof.upper < functional - limits.tolerance)
           s = proof.s;
       }
@@ -197,6 +215,8 @@ namespace Debond
       proof_limits() const
       {
         BranchAndBoundParameters limits = parameters.proof;
+        // The tolerance of the scene is relative, branch and bound's is an
+        // energy.
         limits.tolerance *= result.energy_of_bonds;
         return limits;
       }
@@ -207,6 +227,7 @@ namespace Debond
         result.search_trials += search.trials;
         result.search_improvements += search.improvements;
         result.search_failures += search.failures;
+        // A trial that led to no minimum might have led to a lower one.
         result.kind = search.complete && result.search_failures == 0 ?
                         MinimumKind::best_known :
                         MinimumKind::stationary;
@@ -220,7 +241,9 @@ namespace Debond
         result.proof_nodes     = proof.nodes;
         result.lower_bound     = proof.lower + condensed.energy_at_zero();
         const double gap       = proof.upper - proof.lower;
-        result.relative_gap    = gap > 0. ? gap / result.energy_of_bonds : 0.;
+        // A gap below zero is rounding between two ways to compute the same
+        // energy.
+        result.relative_gap = gap > 0. ? gap / result.energy_of_bonds : 0.;
         if (proof.status == ProofStatus::proved)
           result.kind = MinimumKind::global;
       }
@@ -228,6 +251,9 @@ namespace Debond
       void
       search_all_nodes()
       {
+        // With nodal quadrature each s_i has a law of its own, and Phi is
+        // separable, as the bound needs it. With others the lumped bonds only
+        // guide the search.
         const GuidedSearchResult guided = guided_search(
           problem(), adhesion.points().is_nodal(), proof_limits(), s);
         add_search(guided.search);
@@ -240,11 +266,16 @@ namespace Debond
       void
       search_coarse_nodes()
       {
+        // The cheapest first: the certificate takes one factorisation, and
+        // where it proves the result there is nothing to search for.
         if (is_proved_at_start())
           return;
         guess =
           ActiveSetGuess(condensed.schur_complement(),
                          coarsen(adhesion.contact_boundary(), guess_nodes));
+        // Starts from rest and from all bonds broken find the minima that are
+        // far away. They need an active set from coarse spaces, since from afar
+        // it takes the more systems the more nodes there are.
         BranchSearchParameters starts;
         starts.maximum_shift = 0;
         starts.flips         = false;
@@ -252,7 +283,10 @@ namespace Debond
         look_on_coarse_mesh();
         BranchSearchParameters edges = starts;
         edges.starts                 = false;
-        edges.maximum_shift          = 1;
+        // The coarse mesh knows the fronts to within its nodes; moves by one
+        // node on the finest mesh put them in their places. The result may now
+        // be provable.
+        edges.maximum_shift = 1;
         search_nodes(edges);
         is_proved_at_start();
       }
@@ -266,6 +300,8 @@ namespace Debond
       bool
       is_proved_at_start()
       {
+        // Without branching the bound needs laws that are separable and have
+        // finitely many quadratic pieces.
         if (!adhesion.points().is_nodal() || !lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters no_nodes = proof_limits();
@@ -286,7 +322,11 @@ namespace Debond
           coarsen(adhesion.contact_boundary(), largest_automatic_search);
         const auto search = [&](const PiecewiseProblem &coarse,
                                 Eigen::VectorXd        &coarse_s) {
-          result.search_nodes     = static_cast<unsigned int>(coarse_s.size());
+          // The user has to know on how many nodes the whole search was done.
+          result.search_nodes = static_cast<unsigned int>(coarse_s.size());
+          // The coarse bonds act on s = P_1 ... P_k s_k, so that their Phi is
+          // not separable. What the proof calls a minimum of the lumped one is
+          // only another start.
           Eigen::VectorXd weights = lumped_weights(adhesion);
           for (const Eigen::SparseMatrix<double> &P : prolongations)
             weights = (P.transpose() * weights).eval();
@@ -310,12 +350,17 @@ namespace Debond
         const auto             S = condensed.schur_complement();
         const Eigen::VectorXd &g = condensed.load();
 
-        CondensedProblem             finest(S, g, adhesion, point);
+        CondensedProblem finest(S, g, adhesion, point);
+        // The best coarse state, prolongated level by level, is minimised on
+        // the finest nodes as far as the limit of work allows.
         const MajoriseMinimiseResult minimum =
           minimise_trial(method, finest, [&](const auto &iteration) {
             work.add(iteration.operations);
             return !work.requested();
           });
+        // A trial that fails weakens the word, one that the limit has stopped
+        // does not: the limit itself is reported. A state that is lower by
+        // rounding alone is none.
         const auto given = CondensedProblem(S, g, adhesion, s).evaluate();
         if (minimum.status != SolverStatus::success)
           result.search_failures += minimum.status != SolverStatus::interrupted;
@@ -359,14 +404,23 @@ namespace Debond
   {
     if (adhesion.adhesive_law().branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
-    // So close to a drop of the traction bonds may be on either side.
+    // At a drop of the traction J has a concave kink, from which one of the two
+    // directions descends. So close to it rounding decides on which side a bond
+    // is, and nothing is claimed.
     if (is_at_drop(adhesion, s, Tolerance::at_kink))
       return MinimumKind::stationary;
+    // Away from kinks J is a convex quadratic on s <= 0: it rises around the
+    // point.
     if (!adhesion.softens())
       return MinimumKind::local_minimum;
+    // Where bonds soften, Phi'' is negative, and only S can tell whether it
+    // outweighs that.
     if (condensed == nullptr)
       return MinimumKind::stationary;
-    // What touches the foundation without pressing on it is free, too.
+    // The second-order condition: S + Phi'' is positive definite on the s_i
+    // that are free, with the smaller Phi'' where a bond is next to a kink.
+    // Nodes at s = 0 under pressure cannot move to first order; those that only
+    // touch the foundation can, and are free too.
     const Eigen::MatrixXd S = condensed->schur_complement();
     const Eigen::VectorXd pressure =
       condensed->load() - S * s - adhesion.subgradient(s);
@@ -395,9 +449,12 @@ namespace Debond
     WhichMinimum result;
     result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = wants_search(parameters);
+    // A J without adhesion is convex, and its minimum is the only one.
     if (result.kind == MinimumKind::global || !(searches || parameters.prove))
       return result;
 
+    // The search comes first: a good upper value lets branch and bound discard
+    // more nodes.
     MinimumSearch<dim> search(
       parameters, adhesion, condensed, interruption, s, result);
     if (searches)
@@ -418,7 +475,12 @@ namespace Debond
                  const double  energy_rounding,
                  WhichMinimum &minimum)
   {
-    // At other points the condensed problem is wrong by as much as here.
+    // S and g are taken as given by branch and bound, although elimination has
+    // rounded them. At the result the effect of that is known, as the
+    // difference between the condensed J and J from the strains, and it is as
+    // large at the point that the bound is about: hence twice. eps <u, D u>
+    // stands for what the rows of A lose, the last term for the sums of the
+    // bound itself.
     const double rounding = 2. * std::abs(functional - minimum.functional) +
                             8. * energy_rounding +
                             16. * std::numeric_limits<double>::epsilon() *
@@ -429,6 +491,8 @@ namespace Debond
         progress.lower -= rounding;
         progress.upper += rounding;
       }
+    // J below its own lower bound shows that something rounds worse than was
+    // assumed. Then nothing is known, and the proof is withdrawn.
     if (functional < minimum.lower_bound)
       {
         minimum.kind         = MinimumKind::stationary;
