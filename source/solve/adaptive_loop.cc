@@ -19,8 +19,9 @@ namespace Debond
 {
   namespace
   {
-    /// How many times the cells the next mesh has if a goal besides the
-    /// estimate has not been reached.
+    /// The growth of the cells from mesh to mesh if a goal besides the estimate
+    /// has not been reached. The goal does not say how fine its mesh will be,
+    /// so the steps are small.
     constexpr double growth_for_goal = 1.7;
 
 
@@ -51,6 +52,8 @@ namespace Debond
                                   body.n_vertices() :
                                   2. * body.n_vertices() + body.n_cells() - 1.;
       const double n_unknowns = dim * n_nodes;
+      // A goal has a factorisation of its own (the problem for stresses of a
+      // certificate), which may need more unknowns than the displacements do.
       const double memory =
         goal != nullptr ?
           memory_of_factorisation(dim,
@@ -133,6 +136,8 @@ namespace Debond
         , progress(begun)
         , growth(accuracy, dim, problem.degree)
       {
+        // The meshes of an interrupted run count as this one's: the observer
+        // sees all of them, and the factor of the error is measured with them.
         for (AdaptiveLevel &level : progress.levels)
           {
             observer.level_is_done(level);
@@ -143,15 +148,22 @@ namespace Debond
       AdaptiveResult<dim>
       run()
       {
+        // Each pass of the loop takes one mesh further: cells are divided where
+        // the estimate is large, the scene is evaluated anew, and the state of
+        // the mesh before is the start.
         seconds = scene->mesh_seconds() + scene->assembly_seconds();
         solve_on(scene, without_proof(settings.choice));
         while (!is_finished())
           {
             timer.restart();
             seconds = 0.;
-            std::string                                    limit;
+            std::string limit;
+            // The next mesh is made before it is known to be affordable, since
+            // closure cuts more cells than are asked for; the body alone is
+            // small.
             const std::shared_ptr<const BisectedBody<dim>> body =
               next_body(limit);
+            // An estimate relative to J = 0 is no aim either.
             if (!limit.empty() || estimate.functional == 0.)
               {
                 say_what_is_missing(limit);
@@ -162,6 +174,10 @@ namespace Debond
             SolveSettings on_next = without_proof(wanted);
             try
               {
+                // The choice depends on the size, so that a sequence may begin
+                // with a factorisation and end with multigrid. What does not
+                // fit ends the sequence, not the run: the result of the mesh
+                // before stays.
                 choose_linear_solver(*next,
                                      settings.parameters,
                                      on_next.choice);
@@ -176,18 +192,24 @@ namespace Debond
                 interrupt();
                 break;
               }
+            // The interpolated state keeps the fronts of the bonds, so that a
+            // finer mesh stays with the same minimum and needs few steps.
             progress.start = divided_displacement(scene->problem(),
                                                   result.solve.u,
                                                   body->ancestors(),
                                                   next->problem());
             observer.next_mesh_is_made(progress, *next);
-            // Its memory is for the next mesh; the state of a path knows it.
             const std::shared_ptr<const Body<dim>> finished = latest;
             latest                                          = body;
+            // Mesh and matrix of the old scene would lie beside the new
+            // factorisation at the peak of the memory. The state of a path
+            // refers to its scene, which then has to stay.
             if (finished && result.path.progress.steps.empty())
               scene.reset();
             if (!solve_on(next, on_next))
               {
+                // A signal has ended the work on the new mesh; the files are
+                // written for the old one, which has to be made again.
                 if (!scene)
                   scene = std::make_shared<const Scene<dim>>(problem,
                                                              finished,
@@ -196,6 +218,8 @@ namespace Debond
                 break;
               }
           }
+        // The proof is about one mesh, so it waits for the last one and starts
+        // from its result.
         if (settings.parameters.prove &&
             result.solve.status == SolverStatus::success)
           result.solve = solve(choice,
@@ -218,9 +242,9 @@ namespace Debond
         return result;
       }
 
-      /// Whether there is a result on this mesh that a finer one may replace,
-      /// or the last word; if a signal came before, that of the mesh before
-      /// stays.
+      /// Solves on one mesh. Returns whether there is a result on it, which a
+      /// finer one may replace, or which is the last word; if a signal came
+      /// before, the result of the mesh before stays.
       bool
       solve_on(const std::shared_ptr<const Scene<dim>> &here,
                const SolveSettings                     &on_mesh)
@@ -240,6 +264,8 @@ namespace Debond
                         false,
                         progress.start.size() > 0 ? &progress.start : nullptr);
                 functional = solution.functional;
+                // An estimate of what is no equilibrium would measure the
+                // residual of the solver and not the error of the mesh.
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
                   estimate = estimate_of(*here,
@@ -254,12 +280,17 @@ namespace Debond
                 solution = std::move(path.result);
               }
           }
+        // The data of the scene are evaluated at points that the solve does not
+        // ask for, and may be wrong there. The result is none the worse, but
+        // there is nothing to refine by.
         catch (const std::invalid_argument &error)
           {
             result.shortfall =
               std::string("The error of the mesh is not known, ") +
               error.what() + '.';
           }
+        // Half a solve on a finer mesh is worth less than a finished one on a
+        // coarser mesh.
         const bool has_result = result.solve.u.size() > 0;
         if (has_result && solution.status == SolverStatus::interrupted)
           {
@@ -283,7 +314,9 @@ namespace Debond
         if (!ended)
           {
             const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
-            const double                search_gain =
+            // What a search has lowered J by on this mesh is no gain of
+            // refinement, and is left out of the measured factor.
+            const double search_gain =
               result.solve.functional_from_start.value_or(functional) -
               functional;
             AdaptiveLevel level = {scene->n_cells(),
@@ -310,6 +343,7 @@ namespace Debond
       FollowedPath<dim>
       follow(const Scene<dim> &here, const SolveSettings &on_mesh)
       {
+        // Global branch and arc belong to the last mesh alone.
         LoadPathParameters followed = problem.load_path;
         followed.global_branch      = GlobalBranch::none;
         followed.arc                = false;
@@ -343,6 +377,8 @@ namespace Debond
       {
         if (goal == nullptr)
           return;
+        // A goal that cannot be looked at on this mesh ends the refinement with
+        // its reason.
         goal_here        = goal->look(scene, result.solve, is_last);
         result.shortfall = goal_here.failure;
       }
@@ -360,6 +396,7 @@ namespace Debond
             interrupt();
             return true;
           }
+        // A target of zero stands for none: then only the goal counts.
         return goal_here.is_reached &&
                (growth.meets_target() || accuracy.target == 0.);
       }
@@ -369,9 +406,13 @@ namespace Debond
       std::shared_ptr<const BisectedBody<dim>>
       next_body(std::string &limit)
       {
+        // A goal may know better than the estimate which cells keep it from
+        // being reached.
         const bool by_goal = !goal_here.is_reached && !goal_here.parts.empty();
         double     times   = goal ? growth_for_goal : growth.next();
         progress.divisions.emplace_back();
+        // If the mesh would be too large, smaller ones are tried, down to one
+        // that is hardly worth the solve. Each try starts from the same cells.
         while (true)
           {
             progress.divisions.back() =
@@ -397,6 +438,8 @@ namespace Debond
       void
       say_what_is_missing(const std::string &limit)
       {
+        // The goal may reach on the last mesh what it has put off, and is asked
+        // before anything is called missing.
         look_at_goal(true);
         if (!result.shortfall.empty())
           return;
@@ -472,6 +515,8 @@ namespace Debond
           std::dynamic_pointer_cast<const Body<dim>>(problem.body));
         for (const std::vector<unsigned int> &times : divisions)
           {
+            // Divisions of an earlier run are replayed cell by cell, so that
+            // the mesh and the numbers of its cells are those of that run.
             if (static_cast<double>(times.size()) != body->n_cells())
               throw std::invalid_argument("the mesh is not that of the run "
                                           "before; run without --restart");

@@ -14,7 +14,8 @@ namespace Debond
 
 
 
-    /// Of the factor that changes.
+    /// The factor that changes, at a part of the way between two steps: that of
+    /// the loads, or that of prescribed displacements if the loads stay.
     double
     factor_between(const LoadFactors first,
                    const LoadFactors last,
@@ -28,8 +29,10 @@ namespace Debond
 
 
 
-    /// Where displacements are proportional to the factor and bonds are at
-    /// nodes.
+    /// The factor of the first change where displacements are proportional to
+    /// the factor and bonds are at nodes. Then each bond comes to an end of its
+    /// piece at a multiple of the present factor, and no path has to be
+    /// followed.
     template <int dim>
     std::optional<double>
     proportional_change(const PiecewiseEnergy       &branches,
@@ -37,6 +40,10 @@ namespace Debond
                         const PathPoint             &last,
                         const double                 factor)
     {
+      // All factors are multiples of the present one. A change counts if it
+      // comes before the end of the step, whether the load grows or falls; each
+      // bond can only leave its piece by the end that lies ahead, and bonds
+      // that do not heal do not return.
       double     first     = factor / last.factors.loads;
       const bool increases = first > 1.;
       bool       changes   = false;
@@ -64,7 +71,9 @@ namespace Debond
 
 
     /// From rest, where all nodes are about to leave contact or to press on it,
-    /// the state grows in proportion until bonds change.
+    /// the state grows in proportion to the load until bonds change. One
+    /// problem with s <= 0 and the initial stiffness of the bonds decides which
+    /// nodes leave.
     template <int dim>
     std::optional<double>
     change_from_rest(const CondensedScene<dim>   &scene,
@@ -88,8 +97,10 @@ namespace Debond
 
 
 
-    /// Where bonds are not at nodes. On the way to their first change they are
-    /// linear springs.
+    /// The first change where bonds are at quadrature points between nodes. On
+    /// the way to it all bonds are linear springs, which S + E contains; nodes
+    /// come into contact and leave it, and each straight piece of the way is
+    /// searched for a point that reaches a kink.
     template <int dim>
     std::optional<double>
     change_between_nodes(const CondensedScene<dim>   &scene,
@@ -103,6 +114,8 @@ namespace Debond
       const Eigen::SparseMatrix<double> springs   = bonds.curvature(last.s);
       Eigen::MatrixXd                   stiffness = problem.S;
       stiffness += springs;
+      // The bonds on their pieces are part of stiffness and load, so that the
+      // path itself has no law and only contact makes its breakpoints.
       const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
       problem.load += springs * last.s - bonds.subgradient(last.s);
       StationaryPath path({stiffness,
@@ -115,6 +128,8 @@ namespace Debond
                           last.s,
                           0.);
       Event          event = Event::contact;
+      // Contact that comes and goes more than twice a node goes round in a
+      // circle by rounding; then nothing is known.
       for (unsigned int k = 0;
            event == Event::contact && k < 2 * last.s.size() &&
            !interruption.requested();
@@ -147,14 +162,16 @@ namespace Debond
                     const Interruption          &interruption)
   {
     const PiecewiseEnergy &branches = scene.scene.law().branches();
-    // Bonds that soften change by and by.
+    // A law of one piece has no change, and bonds that soften change by and by.
     if (branches.size() == 1 || branches.softens())
       return {};
     bool has_slope = false;
     for (unsigned int k = 0; k < branches.size(); ++k)
       has_slope = has_slope || branches[k].slope != 0.;
-    // Without a slope, gaps and other factors displacements are proportional
-    // to the factor.
+    // From the cheapest to the dearest: without gaps, slopes of the law and
+    // other factors all displacements are proportional to the factor, and the
+    // change is a quotient. Otherwise the way is straight between changes of
+    // contact, and the path of stationary points is followed over them.
     const LoadPathParameters   &load_path = scene.scene.parameters().load_path;
     const ElasticUnknowns<dim> &unknowns  = scene.scene.problem().unknowns();
     const bool                  is_proportional =

@@ -17,6 +17,8 @@ namespace Debond
 {
   namespace
   {
+    /// The limits of one majorant. Cycles that work take some ten iterations,
+    /// so that whoever reaches one of these has stagnated.
     constexpr unsigned int maximum_linear_iterations = 2000;
     constexpr unsigned int maximum_line_steps        = 500;
 
@@ -61,6 +63,8 @@ namespace Debond
   MajorantProblem::State
   DisplacementProblem::evaluate()
   {
+    // J and its residual come from A, f and the bonds in double precision,
+    // whatever the single precision of the cycle does.
     A.vmult(internal, u);
     const Eigen::VectorXd s  = contact.trace(u);
     const Eigen::VectorXd xi = phi.subgradient(s);
@@ -69,7 +73,8 @@ namespace Debond
     state.functional = 0.5 * (internal * u) - f * u + phi.change(s);
 
     // The terms of a row of A u are as large as diagonal times displacement,
-    // and cancel.
+    // and cancel. What they leave is the least residual that can be asked for,
+    // and with u the least change of J that means anything.
     Vector terms = diagonal;
     terms.scale(u);
     force_rounding            = Tolerance::row_of_product * terms.l2_norm();
@@ -107,6 +112,9 @@ namespace Debond
     E                                              = phi.curvature(s);
     const Eigen::VectorXd E_s                      = E * s;
     b_c                                            = E_s - phi.subgradient(s);
+    // A majorant that is the same but for rounding has the same minimum, which
+    // ends the iteration instead of another cycle. The first one is new in any
+    // case.
     if (previous_b_c.size() != b_c.size())
       return true;
     return (b_c - previous_b_c).norm() >
@@ -120,8 +128,11 @@ namespace Debond
   void
   DisplacementProblem::smooth_contact(Vector &force)
   {
-    // Each rank goes through all nodes, and then adds what that does to its
-    // unknowns.
+    // A projected Gauss-Seidel sweep over the contact normals, each to where
+    // the majorant is least with all else held. It finds the contact set
+    // locally before the coarse levels see it, and keeps J from rising. It is
+    // sequential, and short beside a product with A; so each rank does the
+    // whole of it and then adds what that does to its own unknowns.
     using Entry                   = Eigen::SparseMatrix<double>::InnerIterator;
     Eigen::VectorXd       s       = contact.trace(u);
     const Eigen::VectorXd old_s   = s;
@@ -137,6 +148,8 @@ namespace Debond
         for (Entry entry(E, i); entry; ++entry)
           force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
       }
+    // The force of all other unknowns is brought up to date with the rows of A
+    // that couple to contact nodes, which is far less than a product with A.
     contact.set(s, u);
     Vector step(u);
     step = 0.;
@@ -154,6 +167,9 @@ namespace Debond
                                       Vector       &correction,
                                       unsigned int &n_iterations) const
   {
+    // Conjugate gradients for Q(A + E)Q, which is the matrix of the truncated
+    // cycle. They are left early when a signal comes, or when the residual has
+    // stopped falling above the tolerance because of rounding.
     dealii::SolverControl    control(maximum_linear_iterations, tolerance);
     dealii::SolverCG<Vector> cg(control);
     Stagnation               stagnation;
@@ -174,6 +190,8 @@ namespace Debond
       {
         is_solved = false;
       }
+    // The cycle keeps held unknowns at zero to single precision; here they are
+    // made so exactly.
     contact.set_zero(active, correction);
     n_iterations += control.last_step();
     return is_solved;
@@ -184,6 +202,10 @@ namespace Debond
   MajorantProblem::Minimisation
   DisplacementProblem::minimise(const double tolerance)
   {
+    // One truncated nonsmooth Newton step a pass (Graeser and Kornhuber 2009;
+    // doc/reference/multigrid.md): smooth the contact nodes, fix those that are
+    // pressed, solve for all others, and go along the correction as far as s <=
+    // 0 and the majorant allow.
     const double required   = tolerance * largest_force;
     const Vector previous_u = u;
     Minimisation result     = {SolverStatus::quadratic_program, 0, 0};
@@ -207,6 +229,9 @@ namespace Debond
         smooth_contact(force);
         const Eigen::VectorXd s       = contact.trace(u);
         const Eigen::VectorXd force_s = contact.trace(force);
+        // Nodes that are in contact and pressed do not move. All others are
+        // free, also those in contact that a force pulls, since the smoother
+        // has not lifted them yet.
         for (unsigned int i = 0; i < s.size(); ++i)
           active[i] = s(i) == 0. && force_s(i) >= 0.;
         free_force = force;
@@ -218,6 +243,8 @@ namespace Debond
             return result;
           }
 
+        // Truncation costs products on the contact boundary at all levels, so
+        // it is done only if T or E have changed.
         const bool is_changed = !is_prepared || cycle_active != active ||
                                 curvature_norm(cycle_E - E) != 0.;
         if (is_changed)
@@ -227,6 +254,10 @@ namespace Debond
             cycle_active = active;
             is_prepared  = true;
           }
+        // While T or E change, a tenth of the residual is enough: the exact
+        // minimum for a wrong contact set is worth nothing. Once they stay, the
+        // tolerance itself is asked for, with some room for the difference
+        // between recursive and true residual.
         const bool is_solved =
           solve_majorant(free_force,
                          std::max(0.9 * required,
@@ -241,7 +272,10 @@ namespace Debond
         if (!is_solved)
           return result;
 
-        // Onto s <= 0, and then as far as the majorant falls.
+        // The correction may go through the foundation. Components that would
+        // are cut at s = 0 for a step of 1, and a longer step ends where the
+        // first node touches. On this line the majorant is a parabola, whose
+        // minimum is the step.
         double                longest = std::numeric_limits<double>::infinity();
         const Eigen::VectorXd c       = contact.trace(correction);
         const Eigen::VectorXd allowed = c.cwiseMin(-s);
@@ -252,6 +286,9 @@ namespace Debond
         A.vmult(image, correction);
         const Eigen::VectorXd of_bonds = E * allowed;
         contact.add(of_bonds, image);
+        // Cutting may have turned the correction into one that ascends, or
+        // there may be rounding alone; both end the minimisation, and the
+        // caller says so.
         const double slope     = force * correction;
         const double curvature = image * correction;
         if (!(slope > 0.) || !(curvature > 0.))
@@ -262,6 +299,8 @@ namespace Debond
         const double step = std::min(longest, slope / curvature);
         u.add(step, correction);
         force.add(-step, image);
+        // The step ends at s = 0 but for rounding, which must not count as
+        // penetration.
         contact.set(contact.trace(u).cwiseMin(0.), u);
       }
     return result;

@@ -8,6 +8,7 @@ namespace Debond
 {
   namespace
   {
+    /// The search and the proof at one factor after the other.
     template <int dim>
     class BranchSearch
     {
@@ -37,6 +38,9 @@ namespace Debond
       {
         if (point.which.kind == MinimumKind::global)
           return;
+        // The point is the best that all searches have found, so the proof
+        // searches no more. If it does not succeed, what the search knew still
+        // holds.
         SolverParameters proof = parameters;
         proof.search           = BondSearchChoice::none;
         proof.prove            = true;
@@ -64,6 +68,8 @@ namespace Debond
             .minimize(problem, [this](const auto &) {
               return !interruption.requested();
             });
+        // Only a state that is lower by more than rounding is taken; otherwise
+        // neighbours would hand the same minimum back and forth.
         const double rounding = problem.evaluate().functional_rounding;
         if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)
@@ -84,6 +90,8 @@ namespace Debond
         WhichMinimum                which =
           find_better_minimum(what, bonds, condensed, interruption, point.s);
         point.functional = condensed_functional(condensed, bonds, point.s);
+        // The bound of the condensed problem is moved outwards, to hold for J
+        // from the strains at this factor.
         if (which.proof_attempted)
           round_outwards(point.functional + condensed.energy_at_zero(),
                          rounding_of_energy(scene.scene.problem(),
@@ -129,6 +137,11 @@ namespace Debond
     BranchSearch<dim> search(parameters, scene, interruption);
     const bool        proves = wanted == GlobalBranch::prove;
 
+    // Minima live on over intervals of factors, so the lowest one at a factor
+    // is often known from its neighbour. The way up hands on states of small
+    // loads (mostly bonded), the way down those of large loads (mostly broken).
+    // Proofs come last, since a proof about a state that is replaced afterwards
+    // would be lost.
     Branch             branch;
     const BranchPoint *last = nullptr;
     for (const auto &[factor, given] : start)

@@ -55,6 +55,8 @@ namespace Debond
       LoadFactors
       at(const double value) const
       {
+        // Without displacement factors of their own, prescribed displacements
+        // follow the loads.
         LoadFactors factors                                   = path.at(0);
         (is_of_loads ? factors.loads : factors.displacements) = value;
         if (path.displacement_factors.empty())
@@ -98,7 +100,8 @@ namespace Debond
         return arc;
       }
 
-    // t rises to begin with.
+    // The path of stationary points starts with rising t, so t is the factor or
+    // its negative, whichever rises towards the next factor.
     const double                    first    = varied.first();
     const double                    length   = varied.other() - first;
     const double                    sign     = length > 0. ? 1. : -1.;
@@ -111,7 +114,10 @@ namespace Debond
                         s,
                         sign * first);
     const auto                      add = [&](const bool is_stable) {
-      const LoadFactors     factors = varied.at(sign * path.t() + 0.); // no -0
+      const LoadFactors factors = varied.at(sign * path.t() + 0.); // no -0
+      // Bonds that do not heal remember the largest opening of the way, but a
+      // bond that sits at its kink, where the arc goes on with a smaller pull,
+      // has not broken yet.
       AdhesionIntegral<dim> here = scene.bonds(factors);
       here.set_memory(memory);
       if (!parameters.bonds_heal)
@@ -128,6 +134,8 @@ namespace Debond
       step.displacement_factor = factors.displacements;
       step.status = is_stable ? "stable" : "unstable";
       step.state = state_of(scene.scene, here, factors, u, verification);
+      // Each state is verified like a result. One that fails is still listed,
+      // so that the user sees where the arc was lost.
       if (!(verification.error() <= tolerance))
         {
           step.status = "not verified";

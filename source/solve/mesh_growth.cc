@@ -10,15 +10,18 @@ namespace Debond
 {
   namespace
   {
-    /// The part of Accuracy/Target that a mesh is made for.
+    /// The part of Accuracy/Target that a mesh is made for, so that the last
+    /// one does not miss it by little.
     constexpr double aim = 0.9;
 
-    /// Of what the residuals say. J that falls although the residual estimate
-    /// grows comes from a first mesh that does not see what there is; larger
-    /// factors belong to exponents below 0.1.
+    /// The largest factor by which the error may exceed what the residuals say.
+    /// J that falls although the residual estimate grows comes from a first
+    /// mesh that does not see what there is; larger factors belong to exponents
+    /// below 0.1.
     constexpr double largest_factor = 20.;
 
-    /// Cells that are cut for others.
+    /// The growth by cells that are cut for others, so that there are no
+    /// hanging nodes.
     constexpr double closure = 1.1;
   } // namespace
 
@@ -53,6 +56,9 @@ namespace Debond
       {
         const AdaptiveLevel &before = levels.back();
         level.error_factor          = before.error_factor;
+        // The rate of the last two meshes extrapolates to the next one. A
+        // single pair of meshes may say anything, so it is kept between half
+        // and one and a half times that of smooth solutions.
         rate =
           std::clamp(std::log(before.residual_error / level.residual_error) /
                        std::log(static_cast<double>(level.unknowns) /
@@ -60,6 +66,9 @@ namespace Debond
                      0.5 * smooth_rate,
                      1.5 * smooth_rate);
       }
+    // The last mesh with sufficiently fewer unknowns gives the factor: closer
+    // ones differ by little more than rounding and chance in where cells are
+    // cut. What searches found on the way since then is not the mesh's merit.
     double found = level.search_gain;
     for (auto before = levels.rbegin(); before != levels.rend(); ++before)
       {
@@ -67,6 +76,10 @@ namespace Debond
             least_ratio * before->unknowns <= level.unknowns)
           {
             const double fall = before->functional - level.functional - found;
+            // s_k = (J_m - J_k) / (E_m - E_k) of the theory page, with J as
+            // energies. If the estimate does not fall although J does, the
+            // largest factor is assumed; if neither does, the estimate is all
+            // that is known.
             const double explained = before->residual_error * before->scale -
                                      level.residual_error * level.scale;
             level.error_factor =
@@ -87,6 +100,8 @@ namespace Debond
   MeshGrowth::meets_target() const
   {
     const AdaptiveLevel &last = levels.back();
+    // An estimate without a measured factor counts only if even the largest one
+    // would do.
     return last.error_factor.value_or(largest_factor) * last.residual_error <=
            accuracy.target;
   }
@@ -104,8 +119,12 @@ namespace Debond
     if (accuracy.maximum_unknowns > 0)
       whole =
         std::min(whole, accuracy.maximum_unknowns / (closure * last.unknowns));
+    // Without any aim each mesh is as much larger as is still efficient.
     if (!std::isfinite(whole))
       return largest_growth;
+    // The way to the aim in equal steps, as few as the largest growth allows;
+    // and where the factor is not known yet, a step that is large enough to
+    // measure it.
     const double steps =
       std::max(1., std::ceil(std::log(whole) / std::log(largest_growth)));
     return std::max(last.error_factor ? least_growth : least_ratio,
@@ -119,7 +138,8 @@ namespace Debond
             const unsigned int         dim,
             const double               growth)
   {
-    // By the part, the first of equal cells.
+    // Cells with the largest parts are cut first; of equal ones the first, so
+    // that the mesh does not depend on the queue.
     using Piece = std::pair<double, int>;
     std::priority_queue<Piece> pieces;
     for (unsigned int cell = 0; cell < parts.size(); ++cell)
@@ -129,6 +149,8 @@ namespace Debond
     std::vector<unsigned int> times(parts.size(), 0);
     double                    n    = static_cast<double>(parts.size());
     const double              goal = growth * n;
+    // Each further division of a cell doubles its pieces. All of them are taken
+    // for equal, with 2^(-(2 + d)/d) of the part before.
     while (n < goal && pieces.top().first > 0.)
       {
         const auto [part, cell] = pieces.top();

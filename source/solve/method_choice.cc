@@ -15,11 +15,12 @@ namespace Debond
 {
   namespace
   {
-    /// Below, the choice hardly matters, and with a factorisation the search is
-    /// on all contact nodes.
+    /// The time below which the choice hardly matters. With a factorisation the
+    /// search is on all contact nodes, so that is preferred.
     constexpr double seconds_that_matter = 1.;
 
-    /// The estimates are not better than that.
+    /// The factor by which multigrid has to be faster: the estimates are no
+    /// better than that.
     constexpr double factor_that_matters = 1.3;
 
 
@@ -34,12 +35,12 @@ namespace Debond
 
 
 
-    /// For each unknown.
+    /// The memory of mesh and matrix for each unknown, as measured.
     constexpr double bytes_of_mesh_and_matrix = 600.;
 
-    /// Of a solve with @p n unknowns and @p n_c contact nodes: of a node, of an
-    /// operation with dense fronts, of S, which is factorised a few times, and
-    /// of the search, as measured for doc/notes/speed.md.
+    /// The time of a solve with @p n unknowns and @p n_c contact nodes: of a
+    /// node, of an operation with dense fronts, of S, which is factorised a few
+    /// times, and of the search, as measured for doc/notes/speed.md.
     double
     seconds_with_factorisation(const unsigned int      dim,
                                const FactorisationCost cost,
@@ -53,8 +54,9 @@ namespace Debond
 
 
 
-    /// How many times as many cycles as at nu = 1/3 the largest Poisson ratio
-    /// takes.
+    /// The factor by which nearly incompressible materials multiply the cycles,
+    /// relative to nu = 1/3. The smoother does not see fields without
+    /// divergence. In plane stress there is no such field.
     double
     more_cycles(const ProblemParameters &problem)
     {
@@ -74,8 +76,8 @@ namespace Debond
 
 
 
-    /// Of the solve of @p n unknowns, within a factor of about 3 on the bodies
-    /// measured.
+    /// The time of a solve of @p n unknowns by multigrid, within a factor of
+    /// about 3 on the bodies measured.
     double
     seconds_with_multigrid(const ProblemParameters &problem,
                            const bool               has_levels,
@@ -103,7 +105,10 @@ namespace Debond
 
 
 
-    /// Whether the scene needs the problem condensed onto the contact normals.
+    /// Returns whether the scene needs S and g: for the metric of the energy
+    /// bundle, for Newton steps and second-order conditions where bonds soften,
+    /// for full searches, proofs and arcs, and for bodies that only bonds hold,
+    /// whose resultants are set in g.
     template <int dim>
     bool
     needs_condensed(const Scene<dim>       &scene,
@@ -132,6 +137,8 @@ namespace Debond
       const ElasticFields<dim>       &fields = scene.problem().fields();
       std::vector<double>             ratios;
       std::vector<dealii::Point<dim>> centres; // of two cells for each ratio
+      // Each face inside the body between two materials, seen from the stiffer
+      // side, is a candidate.
       for (const auto &cell : owned_cells(fields.unknowns().dof_handler()))
         for (const unsigned int f : cell->face_indices())
           if (!cell->at_boundary(f))
@@ -152,6 +159,10 @@ namespace Debond
       if (!ratios.empty() && !scene.body().has_coarse_levels())
         contrast = *std::max_element(ratios.begin(), ratios.end());
       std::unique_ptr<const Body<dim>> coarser;
+      // A contrast hurts only where one coarse cell covers both materials, for
+      // its displacements are then too stiff for the soft one. Two centres are
+      // in one coarse cell if interpolation to them uses the vertices of one
+      // simplex.
       for (const Body<dim> *body = &scene.body(); body != nullptr;
            coarser = body->coarser_level(), body = coarser.get())
         if (const auto levels = body->coarse_levels(centres); !levels.empty())
@@ -241,7 +252,9 @@ namespace Debond
   choose_method(const ProblemParameters &problem,
                 const SolverParameters  &solver)
   {
-    // What would end the machine before anything is known of the factor.
+    // Mesh and matrix are made before a factorisation can be estimated, and may
+    // already be too much for the machine. So they are estimated from the
+    // number of vertices alone, and the user is told before they are made.
     const double n     = problem.dimension * problem.body->n_vertices();
     const double bytes = bytes_of_mesh_and_matrix * n;
     const double left  = memory_left(solver.memory_limit);
@@ -255,6 +268,8 @@ namespace Debond
     MethodChoice choice = {solver.method, solver.linear_solver, ""};
     if (choice.method == SolverMethod::euclidean_bundle)
       choice.linear_solver = LinearSolver::none;
+    // The paper's method needs thousands of iterations where this one needs a
+    // few majorants; it is there to be reproduced, for those who ask for it.
     if (choice.method == SolverMethod::automatic)
       {
         choice.method = SolverMethod::majorise_minimise;
@@ -295,6 +310,9 @@ namespace Debond
     const bool                  has_levels = scene.body().has_coarse_levels();
     const bool needs_S      = needs_condensed(scene, solver, choice.method);
     double     direct_bytes = 0.;
+    // A is known by now, and symbolic factorisation gives the exact number of
+    // entries and operations of its factor. It takes a small part of the
+    // factorisation's time.
     if (choice.linear_solver == LinearSolver::automatic ||
         choice.linear_solver == LinearSolver::direct)
       {
@@ -310,6 +328,10 @@ namespace Debond
           {
             const double direct_seconds =
               seconds_with_factorisation(dim, cost, n, n_c);
+            // Multigrid pays its cycles for each right-hand side: for each
+            // column of S if that is needed, and for each step of a path.
+            // Contrasts take a walk over all cells to find, and only matter
+            // where a factorisation is slow.
             const double multigrid_seconds =
               seconds_with_multigrid(problem, has_levels, n) *
               (direct_seconds > seconds_that_matter ?
@@ -319,7 +341,8 @@ namespace Debond
               static_cast<double>(
                 std::max<std::size_t>(1, problem.load_path.factors.size()));
             std::string reason;
-            // CHOLMOD counts in 31 bits.
+            // CHOLMOD counts in 31 bits, so that a factor beyond some size is
+            // refused by it whatever the memory.
             if (direct_bytes > left || 8. * cost.entries > 1e12)
               reason = "a factorisation would take about " +
                        in_gib(direct_bytes) + " more, there are " +
@@ -344,6 +367,8 @@ namespace Debond
 
     choice.has_levels =
       choice.linear_solver == LinearSolver::multigrid && has_levels;
+    // S by multigrid only where something needs it, since each of its columns
+    // is a solution.
     choice.is_condensed =
       choice.linear_solver == LinearSolver::direct ||
       (choice.linear_solver == LinearSolver::multigrid && needs_S);
@@ -381,6 +406,8 @@ namespace Debond
         (status != SolverStatus::stagnated &&
          status != SolverStatus::quadratic_program))
       return {};
+    // Too little memory for a factorisation leaves the failure of multigrid as
+    // the result.
     MethodChoice direct  = choice;
     direct.linear_solver = LinearSolver::direct;
     try

@@ -45,6 +45,10 @@ namespace Debond
     for (unsigned int i = 0; i < u.size(); ++i)
       if (has_lifting || !unknowns.is_constrained(i))
         {
+          // Each entry of u is rounded by epsilon times itself and by epsilon
+          // times the parts that it is the sum of. The energy of that in the
+          // diagonal of A is what a row of A u may lose, and is not seen by its
+          // sum, in which these terms cancel.
           const double size =
             std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
           terms += diagonal(i) * size * size;
@@ -79,6 +83,8 @@ namespace Debond
         , u(to_extended(start) + lifting)
         , f(load_at(problem, factors))
       {
+        // The contact set of the result in double precision is the first guess,
+        // and mostly the last one.
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);
         // Of what w leaves of a lifting that it undoes.
@@ -98,8 +104,9 @@ namespace Debond
         const Eigen::VectorXd s = to_foundation().template cast<double>();
         const Eigen::SparseMatrix<double> previous_E   = E;
         const Eigen::VectorXd             previous_b_c = b_c;
-        // What is next to a minimum comes to it by Newton steps where Phi
-        // softens, and majorants do not.
+        // Where Phi softens, majorants come to a minimum in the limit only.
+        // Next to it Newton steps with Phi'' get there, and where Phi does not
+        // soften both are the same.
         E                         = phi.second_derivative(s);
         const Eigen::VectorXd E_s = E * s;
         b_c                       = E_s - phi.subgradient(s);
@@ -115,6 +122,10 @@ namespace Debond
       bool
       minimise()
       {
+        // Active sets for s <= 0: each pass solves for equilibrium with the
+        // active nodes at the foundation, then releases nodes that the
+        // foundation would have to pull and takes nodes that would penetrate
+        // it.
         ActiveSetRule rule;
         while (result.systems < maximum_refinement_systems)
           {
@@ -126,6 +137,9 @@ namespace Debond
             if (!solve())
               return false;
 
+            // A penetration counts only above a hundredth of the rounding of
+            // double precision, and a force only above the largest residual
+            // that the free unknowns have kept.
             const Eigen::VectorXd excess =
               to_foundation().template cast<double>();
             const ExtendedVector r  = force();
@@ -155,6 +169,8 @@ namespace Debond
       rounded() const
       {
         DofVector point(static_cast<unsigned int>(u.size()));
+        // The result is w = u - G, which is rounded only here and made
+        // admissible again.
         for (unsigned int i = 0; i < point.size(); ++i)
           point(i) = static_cast<double>(u(i) - lifting(i));
         for (const auto normal : normals)
@@ -174,6 +190,7 @@ namespace Debond
       static ExtendedVector
       load_at(const ElasticProblem<dim> &problem, const LoadFactors factors)
       {
+        // The load without A G, since u itself is the unknown here.
         DofVector load = problem.unknowns().basis().forces_to_unknowns(
           problem.fields().applied_nodal_forces(factors));
         problem.unknowns().constraints().set_zero(load);
@@ -212,6 +229,9 @@ namespace Debond
           if (problem.unknowns().is_constrained(i))
             v(i) = 0.;
         const ExtendedVector s = to_foundation();
+        // A body that is at rest on its foundation has no energy to be relative
+        // to. What w leaves of a lifting that it undoes is the least that can
+        // be resolved.
         return std::max(v.dot(A * v) + s.dot(E_times(s)), least_energy);
       }
 
@@ -248,7 +268,9 @@ namespace Debond
       ExtendedVector
       precondition(const ExtendedVector &r) const
       {
-        // The range of double is smaller.
+        // The preconditioner works in double precision, whose exponents have a
+        // smaller range. The residual is scaled to 1, so that neither the units
+        // of the scene nor the last steps, where it is tiny, make it underflow.
         const long double scale = r.template lpNorm<Eigen::Infinity>();
         DofVector         rounded_r(static_cast<unsigned int>(r.size()));
         if (scale == 0.)
@@ -262,13 +284,21 @@ namespace Debond
       bool
       solve()
       {
+        // Iterative refinement outside, conjugate gradients inside: the
+        // recursive residual of conjugate gradients drifts from the true one,
+        // so u is corrected and the residual computed again until the true one
+        // is small. rho = r'z is the square of the error in the energy norm as
+        // the preconditioner sees it. The factors of A are wrong in a few
+        // directions only, such as the bending of a slender body, so few steps
+        // do.
         long double error = std::numeric_limits<long double>::infinity();
         while (true)
           {
             ExtendedVector r = force();
             release_held(r);
-            ExtendedVector    z   = precondition(r);
-            long double       rho = r.dot(z);
+            ExtendedVector z   = precondition(r);
+            long double    rho = r.dot(z);
+            // The first rho may exceed the energy of a poor start.
             const long double all = std::max(energy(), rho);
             const long double target =
               all * (Tolerance::refinement * Tolerance::refinement);
@@ -276,7 +306,9 @@ namespace Debond
               all == 0. ? 0. : static_cast<double>(std::sqrt(rho / all));
             if (rho <= target)
               return true;
-            // Residuals that are computed again do not fall for ever.
+            // A correction that gains less than two digits has come to what
+            // extended precision can resolve. That is accepted if it is nearly
+            // good enough.
             if (!(rho < 0.01 * error))
               return result.error <= 1e3 * Tolerance::refinement;
             error = rho;
@@ -293,6 +325,9 @@ namespace Debond
                 ExtendedVector q = product(p);
                 release_held(q);
                 const long double curvature = p.dot(q);
+                // Rounding alone makes the curvature of a definite matrix
+                // vanish or turn into a NaN; what has been corrected so far is
+                // kept.
                 if (!(curvature > 0.))
                   break;
                 const long double alpha = rho / curvature;
@@ -341,6 +376,8 @@ namespace Debond
   {
     ExtendedMajorant<dim> majorant(
       problem, phi, factors, solver, interruption, u);
+    // The outer loop of majorise-minimise, which ends when the bonds stay on
+    // their pieces.
     while (majorant.majorise())
       if (!majorant.minimise())
         return majorant.result;
@@ -363,6 +400,9 @@ namespace Debond
   {
     if (u.all_zero())
       return {};
+    // What rounding may have changed is compared with twice the strain energy,
+    // so that refinement is done only where digits are at stake that are
+    // printed.
     double energy = 0.;
     if (problem.unknowns().has_lifting())
       energy = 2. * problem.fields().strain_energy(u, factors);
@@ -379,6 +419,8 @@ namespace Debond
     if (rounding <= allowed_energy_rounding(problem.unknowns().n_free_dofs()))
       return {};
 
+    // u is left as it is where the refinement fails, and a note says how many
+    // digits to trust.
     const RefinementResult refined =
       refine(problem, phi, factors, solver, interruption, u);
     std::ostringstream note;

@@ -54,8 +54,12 @@ namespace Debond
     , body_materials(given.materials.everywhere)
   {
     dealii::Timer timer;
-    std::string   entry    = "Mesh/Source"; // that errors belong to
-    const auto    describe = [&](const std::invalid_argument &error) {
+    std::string   entry = "Mesh/Source"; // that errors belong to
+    // What is wrong shows deep inside mesh, elasticity and bonds, which do not
+    // know where in the file an entry is. They name the entry if they know it;
+    // otherwise the error belongs to the step that was under way. Which of
+    // several entries the user has given, and in which line, is found out here.
+    const auto describe = [&](const std::invalid_argument &error) {
       if (entry == "Mesh/Source" && !elastic_body->cuts.empty())
         entry = "Mesh/Cuts";
       if (const auto *own = dynamic_cast<const EntryError *>(&error))
@@ -63,8 +67,8 @@ namespace Debond
       if (const auto *support = dynamic_cast<const SupportError *>(&error);
           support != nullptr && given.locations.count(entry) == 0)
         entry = given.supports.rollers.count(support->name) > 0 ?
-                     "Boundary conditions/Roller boundaries" :
-                     "Boundary conditions/Clamped boundaries";
+                  "Boundary conditions/Roller boundaries" :
+                  "Boundary conditions/Clamped boundaries";
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
         {
           if (!bonds->is_threshold)
@@ -75,6 +79,8 @@ namespace Debond
         }
       return given.locations.at(entry) + ": " + entry + ": " + error.what();
     };
+    // An error on one rank alone has to end the others as well, which would
+    // wait for its messages.
     on_all_ranks(ranks, [&]() {
       try
         {
@@ -129,6 +135,8 @@ namespace Debond
     body_dead_loads = make_loads<dim>(
       given.loads, dead_loads, true, boundaries, *triangulation);
     body_materials = make_materials(given.materials, names.regions);
+    // Extreme ratios of moduli are refused instead of solved wrongly. The
+    // extremes of the whole body are those of all ranks.
     std::set<double> moduli;
     for (const auto &cell : owned_cells(*triangulation))
       for (const double modulus :
@@ -137,8 +145,8 @@ namespace Debond
     for (const std::set<double> &of_rank :
          dealii::Utilities::MPI::all_gather(ranks, moduli))
       moduli.insert(of_rank.begin(), of_rank.end());
-    // Where parts meet both are in one sum, of whose 16 digits the softer one
-    // has four left.
+    // Where parts meet, the forces of both are in one sum, of whose 16 digits
+    // the softer one has four left.
     if (!moduli.empty() && *moduli.rbegin() > 1e12 * *moduli.begin())
       throw EntryError("Material/Young modulus",
                        words("moduli of ",
@@ -165,6 +173,8 @@ namespace Debond
   {
     if (file.empty())
       {
+        // The paper starts from zero displacement. Over a gap, rest means that
+        // the contact nodes are as far above the foundation as the gap is wide.
         const ContactSpace<dim> &contact =
           elastic_problem->unknowns().contact();
         first_iterate.reinit(elastic_problem->unknowns().n_dofs());
@@ -187,6 +197,7 @@ namespace Debond
         "decide nothing: all its vertices are held by supports, or as corners "
         "by fixed tangential displacements. A finer mesh has others, and "
         "Contact law/Tangential displacement = free does not hold corners");
+    // A load on a boundary that is clamped is often meant for another one.
     const std::set<dealii::types::boundary_id> &clamped =
       boundary_conditions.clamped;
     for (const SurfaceLoad &load : given.loads.on_boundaries())
@@ -218,7 +229,9 @@ namespace Debond
         make_bond_field<dim>(given, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
-    // Asks for the bonds at points of its own, where they may be wrong.
+    // Bonds that vary are expressions, which may be wrong at points that the
+    // solve does not ask for but the estimate of the error does. They are
+    // evaluated there now, so that the error comes before the solve.
     if (bond_field)
       {
         const Loads<dim> none;
