@@ -11,21 +11,21 @@
 
 namespace Debond
 {
-  /// What iterates asks an object of this class whether it is to end before its
-  /// end: here because of SIGINT or SIGTERM, if a SignalWatch records them.
+  /// The request to end before the end, which iterations ask for: here SIGINT
+  /// or SIGTERM, if a SignalWatch records them.
   class Interruption
   {
   public:
     virtual ~Interruption() = default;
 
-    /// Whether to end, on all ranks that were started together: all of them
-    /// have to ask. Loops ask before each piece of work that can take a good
-    /// part of a second.
+    /// Returns whether to end, on all ranks that were started together: all of
+    /// them have to ask. Loops ask before each piece of work that can take a
+    /// good part of a second.
     virtual bool
     requested() const;
 
-    /// The same for loops of which each rank, or each thread, has its own: on
-    /// several ranks what requested() has last said of signals.
+    /// Returns what requested() has last said of signals, for loops that each
+    /// rank, or each thread, has for itself.
     static bool
     noticed();
 

@@ -48,9 +48,9 @@ namespace Debond
 
 
 
-  /// What @p work() returns on the first rank, which alone does it; MPI or
-  /// Boost's serialisation has to know it. Throws as on_all_ranks(). To be
-  /// called by all ranks.
+  /// Returns the result of @p work() on the first rank, which alone does it;
+  /// MPI or Boost's serialisation has to know its type. Throws as
+  /// on_all_ranks(). To be called by all ranks.
   template <typename Work>
   auto
   on_first_rank(const MPI_Comm ranks, const Work &work) -> decltype(work())

@@ -53,7 +53,8 @@ namespace Debond
     /// Nodes of Gmsh's files on one place or plane, to the size of a face.
     constexpr double same_node = 1e-8;
 
-    /// Where parts are asked for beside a vertex, on the way to the centre.
+    /// The part of the way from a vertex to the centre at which parts are asked
+    /// for beside the vertex.
     constexpr double beside_vertex = 1e-3;
 
     /// Middles of contact sides on a certified one, to its length.
@@ -77,7 +78,8 @@ namespace Debond
     /// energies that its steps dissipate: sums of decimals.
     constexpr double decimals = 1e-9;
 
-    /// Of the integral of loads: less has no note.
+    /// The part of the integral of loads below which what is lost of it has no
+    /// note.
     constexpr double load_integral = 1e-6;
 
     // ------------------------------------------------------------------ laws
@@ -102,8 +104,9 @@ namespace Debond
     /// what is left of a held unknown.
     constexpr double held_diagonal = 1e-6;
 
-    /// What makes the coarsest matrix regular where aggregates have dependent
-    /// modes: far above rounding, far below what slows a cycle down.
+    /// The part of the diagonal that makes the coarsest matrix regular where
+    /// aggregates have dependent modes: far above rounding, far below what
+    /// slows a cycle down.
     constexpr double regular_diagonal = 1e-10;
 
     /// Largest part by which a diagonal is enlarged where rounding has made
@@ -155,14 +158,14 @@ namespace Debond
     /// far from rounding.
     constexpr double proximal_stiffness = 1e-8;
 
-    /// What is left of a resultant, to the forces, when it is balanced.
+    /// The rest of a resultant, to the forces, that counts as balanced.
     constexpr double balanced = 1e-12;
 
     /// A proximal step that repeats the one before, to the step.
     constexpr double same_step = 1e-3;
 
-    /// What a motion away from the foundation may go towards it: a long thin
-    /// body that turns about an end presses there by little.
+    /// The way towards the foundation that a motion away from it may take: a
+    /// long thin body that turns about an end presses there by little.
     constexpr double towards_foundation = 1e-7;
 
     /// Displacements by which a body comes off, to the largest normal one.
@@ -229,8 +232,8 @@ namespace Debond
     /// The contact law, by which success is decided.
     constexpr double contact_law = 1e-6;
 
-    /// What J may still fall by: energies are off by the square of what
-    /// displacements are.
+    /// The part by which J may still fall: energies are off by the square of
+    /// what displacements are.
     constexpr double descent = 1e-6;
 
     /// Rounding of nodal forces, to them, from which on nothing is verified;
@@ -243,8 +246,8 @@ namespace Debond
     /// The scale of forces in contact, to that of the body's.
     constexpr double contact_force = 1e-3;
 
-    /// Of cells where bonds end, to E* / a: with it a front of bonds breaks at
-    /// a load that is 5 % too high (doc/guide/load-path.md).
+    /// The size of cells where bonds end, to E* / a: with it a front of bonds
+    /// breaks at a load that is 5 % too high (doc/guide/load-path.md).
     constexpr double cell_size_at_edge = 1. / 32.;
 
     /// Gaps under pressure that an iterative method has not closed yet.
@@ -255,8 +258,9 @@ namespace Debond
 
     // ---------------------------------------------------------- certificates
 
-    /// What computations may have lost of J, tractions, constants of cells,
-    /// shapes and displacements in contact: a thousand times what they lose.
+    /// The part that computations may have lost of J, tractions, constants of
+    /// cells, shapes and displacements in contact: a thousand times what they
+    /// lose.
     constexpr double certificate = 1e-9;
 
     /// Loads in a cell, bonds, gaps and tractions along a side that have to be
@@ -266,7 +270,7 @@ namespace Debond
 
 
 
-  /// Those of BundleQP.
+  /// The tolerances of BundleQP.
   namespace QPTolerance
   {
     /// Units of rounding by which terms may miss zero.

@@ -143,7 +143,7 @@ namespace Debond
     Eigen::VectorXd   loads_on_sides;
     Eigen::VectorXd   lifting;
 
-    /// Whether tractions, gaps and prescribed displacements are linear on each
+    /// True if tractions, gaps and prescribed displacements are linear on each
     /// side, and body forces and temperatures constant on each cell, to
     /// rounding.
     bool loads_are_exact = true;

@@ -26,11 +26,11 @@ namespace Debond
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s);
 
-  /// Of a plane body the places where bonds that hold meet bonds that do not,
-  /// or none, in the order of the faces: where s is at the last kink of the
-  /// law, at a vertex where the scene's bonds begin, or in the middle of a face
-  /// at one end of which bonds are broken for good. They stay where they are
-  /// when a crack closes. Of solids none.
+  /// Returns the places on a plane body where bonds that hold meet bonds that
+  /// do not, or none, in the order of the faces: where s is at the last kink of
+  /// the law, at a vertex where the scene's bonds begin, or in the middle of a
+  /// face at one end of which bonds are broken for good. They stay where they
+  /// are when a crack closes. Solids have none.
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,

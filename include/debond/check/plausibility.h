@@ -12,7 +12,7 @@
 
 namespace Debond
 {
-  /// What tells whether a result can be that of linear elasticity.
+  /// The numbers that tell whether a result can be that of linear elasticity.
   struct LargestValues
   {
     double displacement = 0.; ///< |u| at a vertex, length
@@ -20,8 +20,8 @@ namespace Debond
     double von_mises    = 0.; ///< of a cell, force per area
   };
 
-  /// Of the displacement @p u. The largest stress of a body with clamped
-  /// corners grows with refinement.
+  /// Returns the largest values of the displacement @p u. The largest stress of
+  /// a body with clamped corners grows with refinement.
   template <int dim>
   LargestValues
   largest_values(const ElasticProblem<dim> &problem,
@@ -42,8 +42,8 @@ namespace Debond
 
 
 
-  /// What a user should know of a result that is right as the solution of the
-  /// discrete problem: that there is no load, that displacements are too
+  /// Returns notes for the user on a result that is right as the solution of
+  /// the discrete problem: that there is no load, that displacements are too
   /// large for linear elasticity, or that faces are too large for bonds that
   /// soften.
   std::vector<std::string>

@@ -88,7 +88,8 @@ namespace Debond
       return broken.empty() ? 0. : reached_of_nodes[node];
     }
 
-    /// The same at a vertex of a face, which may be held.
+    /// Returns the least s that the bonds at a vertex of a face have reached;
+    /// the vertex may be held.
     double
     reached_at(const Face &face, const unsigned int vertex) const;
 
@@ -176,7 +177,7 @@ namespace Debond
       return law.softens();
     }
 
-    /// What is prescribed stays as it is on the way.
+    /// Prescribed displacements stay as they are on the way.
     double
     first_change(const VectorView &s,
                  const VectorView &ds,
@@ -191,8 +192,8 @@ namespace Debond
       return force_intervals(s, std::vector<double>(n_nodes(), delta));
     }
 
-    /// The same with a radius of its own for each node, delta[i] for the
-    /// force on node i.
+    /// Returns these intervals with a radius of its own for each node, delta[i]
+    /// for the force on node i.
     std::vector<Interval>
     force_intervals(const VectorView          &s,
                     const std::vector<double> &delta) const;

@@ -39,7 +39,8 @@ namespace Debond
            const typename AdhesionIntegral<dim>::Barycentric &place,
            const VectorView                                  &s);
 
-  /// Whether at some point the traction drops within @p part of its stretch.
+  /// Returns whether at some point the traction drops within @p part of its
+  /// stretch.
   template <int dim>
   bool
   is_at_drop(const AdhesionIntegral<dim> &phi,

@@ -53,7 +53,8 @@ namespace Debond
 
       dealii::Point<dim> position;
 
-      /// That of the body on the low side of an interface, if there is one.
+      /// The support of the body on the low side of an interface, if there is
+      /// one.
       unsigned int low_support = dealii::numbers::invalid_unsigned_int;
     };
 
@@ -66,7 +67,7 @@ namespace Debond
       /// Indices into `held_vertices` of the others, if it has any.
       std::array<unsigned int, dim> held = {};
 
-      /// The same of the edges, of degree 2.
+      /// The nodes, or held vertices, of the edges, with degree 2.
       std::array<unsigned int, n_simplex_edges(dim)> edge_nodes = {};
       std::array<unsigned int, n_simplex_edges(dim)> edge_held  = {};
 
@@ -84,7 +85,7 @@ namespace Debond
       /// Its place in the order of the cells of the whole mesh.
       dealii::types::coarse_cell_id cell = 0;
 
-      /// Of the k-th coefficient, see `nodes`.
+      /// Returns the contact node of the k-th coefficient, see `nodes`.
       unsigned int
       node(const unsigned int k) const
       {
@@ -105,7 +106,7 @@ namespace Debond
       }
     };
 
-    /// Of the displacement: 1 or 2.
+    /// The degree of the displacement, 1 or 2.
     unsigned int degree = 1;
 
     /// The number of coefficients on a face.

@@ -90,14 +90,15 @@ namespace Debond
     void
     set_factor(const double factor);
 
-    /// Whether all points are vertices, so that each node has a law of its own.
+    /// Returns whether all points are vertices, so that each node has a law of
+    /// its own.
     bool
     is_nodal() const
     {
       return quadrature.is_nodal();
     }
 
-    /// Whether bonds are not the same everywhere.
+    /// Returns whether bonds are not the same everywhere.
     bool
     has_field() const
     {

@@ -46,8 +46,8 @@ namespace Debond
     double
     derivative(const double s, const double reached = 0.) const;
 
-    /// That of the flattest quadratic that touches j_1 at s, with this
-    /// derivative, and is nowhere below it.
+    /// Returns the curvature of the flattest quadratic that touches j_1 at s,
+    /// with this derivative, and is nowhere below it.
     double
     curvature(const double s, const double reached = 0.) const;
 
@@ -67,14 +67,15 @@ namespace Debond
     double
     damage(const double reached) const;
 
-    /// Whether somewhere the traction falls while bonds open.
+    /// Returns whether somewhere the traction falls while bonds open.
     bool
     softens() const
     {
       return minimum.softens();
     }
 
-    /// Where j_1 is not twice differentiable, in ascending order.
+    /// Returns the places where j_1 is not twice differentiable, in ascending
+    /// order.
     std::vector<double>
     kinks() const;
 
@@ -86,11 +87,11 @@ namespace Debond
     const std::string &
     name(const unsigned int piece) const;
 
-    /// Whether bonds on a piece of branches() do not pull at all.
+    /// Returns whether bonds on a piece of branches() do not pull at all.
     bool
     is_loose(const unsigned int piece) const;
 
-    /// Whether bonds hold nothing far away.
+    /// Returns whether bonds hold nothing far away.
     bool
     lets_go() const;
 
@@ -105,7 +106,7 @@ namespace Debond
     bond_strength() const;
 
   private:
-    /// Of the piece that holds; 0 for s > 0 without a memory.
+    /// Evaluates the piece that holds; 0 for s > 0 without a memory.
     template <typename Number>
     double
     on_piece(const double s, const double reached, const Number &number) const;
@@ -127,11 +128,11 @@ namespace Debond
     /// does not: `pieces` have 1 in their place.
     std::string stiffness = {}, threshold = {};
 
-    /// Where `stiffness` is from. Of laws that are not winkler_law() it is a
-    /// factor of all their pieces.
+    /// The entry that `stiffness` is from. In laws that are not winkler_law()
+    /// it is a factor of all their pieces.
     std::string stiffness_entry = "Contact law/Bond stiffness";
 
-    /// Of the bonds of one boundary, numbers or expressions.
+    /// The bonds of one boundary, numbers or expressions.
     struct Bonds
     {
       std::string stiffness, threshold;
@@ -140,7 +141,7 @@ namespace Debond
     /// By the names of the boundaries.
     std::map<std::string, Bonds> boundaries = {};
 
-    /// Whether bonds are not the same everywhere.
+    /// Returns whether bonds are not the same everywhere.
     bool
     has_field() const
     {

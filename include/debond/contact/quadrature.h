@@ -55,7 +55,7 @@ namespace Debond
     ContactQuadrature(const ContactQuadratureParameters &parameters,
                       const unsigned int                 degree = 1);
 
-    /// Whether all points are vertices.
+    /// Returns whether all points are vertices.
     bool
     is_nodal() const
     {

@@ -23,8 +23,8 @@ namespace Debond
 
 
 
-  /// What is prescribed at nodes as constraints on unknowns, with the frames
-  /// that nodes need for that, and the lifting.
+  /// The displacements that are prescribed at nodes as constraints on unknowns,
+  /// with the frames that nodes need for that, and the lifting.
   template <int dim>
   class ConstrainedDofs
   {

@@ -53,7 +53,8 @@ namespace Debond
 
 
 
-  /// The same at other @p factors, at which @p adhesion is.
+  /// Returns the condensed problem at other @p factors, at which @p adhesion
+  /// is.
   template <int dim>
   Condensation
   at_factors(const Condensation          &condensed,

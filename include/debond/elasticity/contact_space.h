@@ -71,7 +71,8 @@ namespace Debond
     Eigen::VectorXd
     at_rest() const;
 
-    /// The same nodes where s itself is the vector of all unknowns.
+    /// Returns the contact space of the same nodes where s itself is the vector
+    /// of all unknowns.
     ContactSpace
     condensed() const;
 

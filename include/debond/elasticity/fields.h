@@ -228,7 +228,8 @@ namespace Debond
     dealii::SymmetricTensor<2, dim>
     stress(const unsigned int q) const;
 
-    /// The same with the stress out of the plane that the hypothesis implies.
+    /// Returns stress() together with the stress out of the plane that the
+    /// hypothesis implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const unsigned int q) const;
 

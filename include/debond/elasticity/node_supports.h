@@ -50,8 +50,8 @@ namespace Debond
 
 
 
-  /// What supports prescribe at the nodes of a mesh: clamps are to come first,
-  /// then other displacements.
+  /// The displacements that supports prescribe at the nodes of a mesh: clamps
+  /// are to come first, then other displacements.
   template <int dim>
   class NodeSupports
   {
@@ -85,7 +85,7 @@ namespace Debond
       return nodes;
     }
 
-    /// What is prescribed at a node; nothing at most.
+    /// Returns the supports of a node, which may prescribe nothing.
     PrescribedNode<dim>
     at(const unsigned int node, const dealii::Point<dim> &position) const
     {
@@ -103,7 +103,7 @@ namespace Debond
       return entry == glued.end() ? nullptr : &entry->second;
     }
 
-    /// Whether the node is one of NodePairs::ends().
+    /// Returns whether the node is one of NodePairs::ends().
     bool
     is_end_of_interface(const unsigned int node) const
     {

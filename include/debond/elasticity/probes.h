@@ -13,7 +13,7 @@
 
 namespace Debond
 {
-  /// What is to be known of a displacement.
+  /// A displacement or a force that the scene asks for by name.
   template <int dim>
   struct Probe
   {
@@ -63,7 +63,8 @@ namespace Debond
            const LoadFactors          factors = 1.) const;
 
   private:
-    /// Of nodes, by their first unknowns, which all the others follow.
+    /// A weighted sum over nodes, given by their first unknowns, which all the
+    /// others follow.
     struct Sum
     {
       std::string                                                     name;

@@ -243,7 +243,7 @@ namespace Debond
       return basis().forces_to_nodal(forces, BasisStep::jumps);
     }
 
-    /// The same for forces between bodies: those on the high side alone, in the
+    /// Returns the forces between bodies: those on the high side alone, in the
     /// place of the jump.
     DofVector
     contact_forces(const DofVector &forces) const

@@ -28,8 +28,8 @@ namespace Debond
     /// Multiples of the loads in their order; empty if there is no load path.
     std::vector<double> factors;
 
-    /// As many multiples of prescribed displacements; empty if they are the
-    /// same.
+    /// The multiples of prescribed displacements, one for each factor; empty if
+    /// they are the same.
     std::vector<double> displacement_factors;
 
     /// Loads without a factor: names of boundaries with loads, "body force".

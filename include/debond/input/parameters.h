@@ -49,7 +49,7 @@ namespace Debond
     Parameters
     parameters(const std::string &scene);
 
-    /// Whether the log may say what depends on the machine.
+    /// Returns whether the log may say what depends on the machine.
     bool
     has_machine_details() const
     {

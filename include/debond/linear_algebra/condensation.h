@@ -59,7 +59,8 @@ namespace Debond
       , other_energy(other_energy)
     {}
 
-    /// The same with another load and energy. Both share the factorisation.
+    /// Returns the problem with another load and energy. Both share the
+    /// factorisation.
     Condensation
     with_load(const DofVector &f, const double energy = 0.) const
     {

@@ -26,7 +26,7 @@ namespace Debond
     void
     vmult(DistributedVector &dst, const DistributedVector &src) const;
 
-    /// The same with the values of src that at_columns() returns.
+    /// Multiplies as above, with the values of src that at_columns() returns.
     void
     multiply(DistributedVector &dst, const std::vector<double> &values) const;
 

@@ -9,8 +9,8 @@
 
 namespace Debond
 {
-  /// Of which each rank has its own entries alone, for what iterates on all
-  /// unknowns. Needs MPI.
+  /// A vector of which each rank has its own entries alone, for what iterates
+  /// on all unknowns. Needs MPI.
   using DistributedVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
 

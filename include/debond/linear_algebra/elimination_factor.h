@@ -23,7 +23,7 @@ namespace Debond
     std::vector<unsigned int> unknowns; ///< rows of A, the kept ones last
     unsigned int              n_kept;
 
-    /// Whether A needs to be definite only where s is zero.
+    /// True if A needs to be definite only where s is zero.
     bool is_semidefinite;
 
     unsigned int

@@ -32,7 +32,7 @@ namespace Debond
       , ranks(ranks)
     {}
 
-    /// Whether there is another rank.
+    /// Returns whether there is another rank.
     bool
     is_shared() const
     {

@@ -33,8 +33,8 @@ namespace Debond
                 const unsigned int n_unknowns_of_node,
                 const MPI_Comm     ranks);
 
-    /// Those among nodes of the whole that are not own ones. They may occur
-    /// repeatedly.
+    /// Makes ghosts of those among nodes of the whole that are not own ones.
+    /// They may occur repeatedly.
     void
     set_ghosts(const std::vector<unsigned int> &nodes);
 
@@ -63,7 +63,7 @@ namespace Debond
       return local < n_own() ? begin + local : ghosts[local - n_own()];
     }
 
-    /// Of an own node or a ghost.
+    /// Returns the local number of an own node or a ghost.
     unsigned int
     local(const unsigned int global) const;
 

@@ -94,9 +94,9 @@ namespace Debond
       return finest;
     }
 
-    /// As truncated: a coarse unknown that no free unknown follows has a
-    /// positive diagonal entry and no others. Prolongations are not truncated.
-    /// Any rank may call it.
+    /// Returns a level as truncated: a coarse unknown that no free unknown
+    /// follows has a positive diagonal entry and no others. Prolongations are
+    /// not truncated. Any rank may call it.
     const MultigridLevel &
     level(const unsigned int l) const
     {

@@ -29,7 +29,8 @@ namespace Debond
         new BisectedBody(*this, times));
     }
 
-    /// Of each cell the one of the mesh that this one is refined() from.
+    /// Returns for each cell the one of the mesh that this one is refined()
+    /// from.
     const std::vector<unsigned int> &
     ancestors() const
     {

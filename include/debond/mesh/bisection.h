@@ -54,14 +54,15 @@ namespace Debond
     unsigned int
     n_cells() const;
 
-    /// Those before a refinement keep their numbers.
+    /// Returns the vertices. Those before a refinement keep their numbers.
     const std::vector<dealii::Point<dim>> &
     vertices() const
     {
       return points;
     }
 
-    /// Of each cell the one before the last refine() that it is a part of.
+    /// Returns for each cell the one before the last refine() that it is a part
+    /// of.
     const std::vector<unsigned int> &
     ancestors() const
     {
@@ -78,8 +79,8 @@ namespace Debond
       std::array<unsigned int, dim + 1> vertices; ///< x_0, ..., x_dim
       unsigned int                      tag;
 
-      /// Of the faces opposite to the vertices, internal_face_boundary_id of
-      /// those inside.
+      /// The boundary ids of the faces opposite to the vertices,
+      /// internal_face_boundary_id of those inside.
       std::array<dealii::types::boundary_id, dim + 1> boundaries;
       dealii::types::material_id                      material;
     };

@@ -82,7 +82,7 @@ namespace Debond
     /// Boundaries NAME that are the two sides NAME_low and NAME_high of a cut.
     std::set<std::string> interfaces = {};
 
-    /// What the user should know of the pieces.
+    /// The notes on the pieces for the user.
     std::vector<std::string> notes = {};
   };
 
@@ -116,11 +116,11 @@ namespace Debond
     virtual double
     n_vertices() const = 0;
 
-    /// Of a box around it, along its edges.
+    /// Returns the extents of a box around the body, along its edges.
     virtual std::array<double, 3>
     extents() const = 0;
 
-    /// Whether Body::coarse_levels() has any.
+    /// Returns whether Body::coarse_levels() has any.
     virtual bool
     has_coarse_levels() const
     {
@@ -159,10 +159,12 @@ namespace Debond
   class Body : public BodyDescription
   {
   public:
-    /// That have names beside those of the whole body's boundaries and regions.
+    /// The parts that have names beside those of the whole body's boundaries
+    /// and regions.
     std::vector<Part<dim>> parts;
 
-    /// Where it is cut into several bodies. There are no coarser meshes then.
+    /// The cuts that make several bodies of this one. There are no coarser
+    /// meshes then.
     std::vector<Cut<dim>> cuts;
 
     std::set<std::string>
@@ -177,8 +179,8 @@ namespace Debond
     PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const;
 
-    /// The same body with about half as many cells in each direction, null if
-    /// there is none in which each part has a face (a cell).
+    /// Returns this body with about half as many cells in each direction, null
+    /// if there is none in which each part has a face (a cell).
     std::unique_ptr<Body>
     coarser() const;
 
@@ -205,7 +207,7 @@ namespace Debond
                   const bool with_own = false) const;
 
   private:
-    /// The same of the body without its parts.
+    /// Returns the names of the body's boundaries without those of its parts.
     virtual std::set<std::string>
     whole_boundaries() const = 0;
 
@@ -218,8 +220,8 @@ namespace Debond
     virtual std::unique_ptr<Body>
     coarser_whole() const = 0;
 
-    /// Of a mesh that is as good as the one of make_whole_mesh(), with vertices
-    /// in another order.
+    /// Returns the linear fields of a mesh that is as good as the one of
+    /// make_whole_mesh(), with vertices in another order.
     virtual LinearFields<dim>
     linear_fields() const;
   };

@@ -42,9 +42,9 @@ namespace Debond
   make_box(const BoxParameters        &parameters,
            dealii::Triangulation<dim> &crossed);
 
-  /// Of this mesh the simplices of the cells from @p begin on, so many in each
-  /// direction: see crossed_cells(). The boundary ids are those of box_sides(),
-  /// also where the part ends inside of the box.
+  /// Returns the simplices that the cells of this mesh from @p begin on have,
+  /// so many in each direction: see crossed_cells(). The boundary ids are those
+  /// of box_sides(), also where the part ends inside of the box.
   template <int dim>
   CellsAndVertices<dim>
   part_of_box(const BoxParameters               &box,

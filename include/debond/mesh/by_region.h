@@ -33,7 +33,7 @@ namespace Debond
       return other != others.end() ? other->second : everywhere;
     }
 
-    /// What @p function makes of each.
+    /// Returns the results of @p function for everywhere and for each region.
     template <typename Function>
     auto
     transformed(const Function &function) const

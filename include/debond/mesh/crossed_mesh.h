@@ -28,7 +28,7 @@ namespace Debond
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
                       dealii::Triangulation<dim>       &crossed);
 
-  /// What dealii::Triangulation::create_triangulation() takes.
+  /// The arguments of dealii::Triangulation::create_triangulation().
   template <int dim>
   struct CellsAndVertices
   {
@@ -37,11 +37,12 @@ namespace Debond
     dealii::SubCellData                faces;
   };
 
-  /// The same of some cells of a mesh, in this order: simplices and vertices
-  /// are to the last bit and in the order in which the whole has them, but for
-  /// those that are not there. The 4 (24) simplices of a coarse cell follow
-  /// each other, face by face, and have their vertices on that face first.
-  /// Faces inside of the body at which the cells end get the id @p id_of_cuts.
+  /// Returns some cells of a crossed mesh, in this order: simplices and
+  /// vertices are to the last bit and in the order in which the whole has them,
+  /// but for those that are not there. The 4 (24) simplices of a coarse cell
+  /// follow each other, face by face, and have their vertices on that face
+  /// first. Faces inside of the body at which the cells end get the id @p
+  /// id_of_cuts.
   template <int dim>
   CellsAndVertices<dim>
   crossed_cells(

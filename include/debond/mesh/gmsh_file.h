@@ -9,10 +9,10 @@
 
 namespace Debond
 {
-  /// What Gmsh makes of a file.
+  /// The contents of a mesh file as Gmsh understands them.
   struct GmshFile
   {
-    /// Of one kind in one entity, with corners as tags of nodes.
+    /// The elements of one kind in one entity, with corners as tags of nodes.
     struct Elements
     {
       int                        dimension, entity, order, n_corners;

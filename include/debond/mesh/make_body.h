@@ -8,7 +8,7 @@
 
 namespace Debond
 {
-  /// What a scene says of its body.
+  /// The entries of a scene on its body.
   struct BodyParameters
   {
     enum class Source

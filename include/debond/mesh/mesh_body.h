@@ -55,7 +55,7 @@ namespace Debond
 
     bool is_simplicial = false;
 
-    /// Of the crossed mesh.
+    /// Returns the number of vertices of the crossed mesh.
     double
     n_vertices_of_level(const unsigned int level) const;
 

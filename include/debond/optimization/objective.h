@@ -107,7 +107,7 @@ namespace Debond
 
     virtual ~DirectionProblem() = default;
 
-    /// Whether x is in K.
+    /// Returns whether x is in K.
     virtual bool
     is_feasible(const DofVector &x) const = 0;
 

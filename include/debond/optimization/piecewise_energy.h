@@ -54,7 +54,7 @@ namespace Debond
       double       decay = 0.;   ///< EnergyPiece::decay
       double       begin = 0.;   ///< with a decay, the piece's own upper end
 
-      /// Whether its parabola is nowhere below f.
+      /// True if its parabola is nowhere below f.
       bool is_above = true;
 
       double
@@ -91,7 +91,7 @@ namespace Debond
                       std::numeric_limits<double>::infinity();
       }
 
-      /// Whether it has the same value everywhere.
+      /// Returns whether it has the same value everywhere.
       bool
       is_flat() const
       {
@@ -109,11 +109,11 @@ namespace Debond
       return PiecewiseEnergy({{0., 0., no_end, ""}});
     }
 
-    /// Whether some piece is not above f.
+    /// Returns whether some piece is not above f.
     bool
     softens() const;
 
-    /// Whether no piece decays.
+    /// Returns whether no piece decays.
     bool
     is_piecewise_quadratic() const;
 
@@ -132,7 +132,7 @@ namespace Debond
     double
     needed_convexity(const double s) const;
 
-    /// Whether the derivative jumps at the lower end of a piece.
+    /// Returns whether the derivative jumps at the lower end of a piece.
     bool
     has_drop(const unsigned int piece) const;
 
@@ -174,7 +174,7 @@ namespace Debond
   private:
     PiecewiseEnergy() = default;
 
-    /// Whether a piece through 0 is all that holds above @p reached.
+    /// Returns whether a piece through 0 is all that holds above @p reached.
     bool
     returns_on_a_piece(const double reached) const
     {

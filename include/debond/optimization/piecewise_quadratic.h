@@ -34,8 +34,8 @@ namespace Debond
     virtual Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const = 0;
 
-    /// Whether infinitely many quadratics touch Phi, as where bonds soften:
-    /// then Phi's own second derivative is less than theirs.
+    /// Returns whether infinitely many quadratics touch Phi, as where bonds
+    /// soften: then Phi's own second derivative is less than theirs.
     virtual bool
     softens() const
     {

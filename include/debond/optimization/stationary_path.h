@@ -44,8 +44,8 @@ namespace Debond
       unsigned int least;   ///< pieces of f before this one do not return
     };
 
-    /// What the points are stationary for, with g(t) = load + (t - t_0) slope,
-    /// t_0 being the first t; S and f are references.
+    /// The functional whose stationary points are followed, with g(t) = load +
+    /// (t - t_0) slope, t_0 being the first t; S and f are references.
     struct Problem
     {
       MatrixView             S;
@@ -84,7 +84,7 @@ namespace Debond
       return s;
     }
 
-    /// Whether the points between the last two are no minima.
+    /// Returns whether the points between the last two are no minima.
     bool
     was_unstable() const
     {
@@ -129,8 +129,8 @@ namespace Debond
       return std::abs(by_t) > Tolerance::no_speed * fastest ? speed * by_t : 0.;
     }
 
-    /// What is left of the segment of s_i on the way to greater ones or back,
-    /// in terms of s_i or its force.
+    /// Returns the rest of the segment of s_i on the way to greater ones or
+    /// back, in terms of s_i or its force.
     double
     distance(const unsigned int i, const bool opens) const;
 
@@ -192,7 +192,7 @@ namespace Debond
     std::vector<unsigned int> free;
     std::vector<Segment>      in_factor;
 
-    /// Where it is not positive definite.
+    /// The factor where the free part is not positive definite.
     std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> indefinite;
   };
 } // namespace Debond

@@ -25,8 +25,8 @@ namespace Debond
   std::string
   to_string(const SolverStatus status);
 
-  /// Whether the end is the best that the solver can do: success, or stagnated,
-  /// where a verification has to decide what the point is worth.
+  /// Returns whether the end is the best that the solver can do: success, or
+  /// stagnated, where a verification has to decide what the point is worth.
   inline bool
   can_be_verified(const SolverStatus status)
   {

@@ -4,8 +4,8 @@
 
 namespace Debond
 {
-  /// What the program returns to the shell; a public interface that --help
-  /// documents.
+  /// The code that the program returns to the shell; a public interface that
+  /// --help documents.
   enum class ExitCode
   {
     success          = 0,

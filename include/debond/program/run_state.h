@@ -25,8 +25,8 @@ namespace Debond
     /// The mesh, those before it and where to start on it.
     AdaptiveProgress meshes;
 
-    /// Whether no finer mesh follows; then why the last one does not meet its
-    /// target, empty if it does.
+    /// True if no finer mesh follows; then `shortfall` is why the last one does
+    /// not meet its target, empty if it does.
     bool        has_last_mesh = false;
     std::string shortfall;
 
@@ -34,8 +34,9 @@ namespace Debond
     PathProgress<dim> path;
   };
 
-  /// Of vertices, cells, boundary and material ids, by which a mesh is known
-  /// again on any number of ranks. To be called by all of them.
+  /// Returns a fingerprint of vertices, cells, boundary and material ids, by
+  /// which a mesh is known again on any number of ranks. To be called by all of
+  /// them.
   template <int dim>
   std::uint64_t
   mesh_checksum(const Scene<dim> &scene);

@@ -20,14 +20,14 @@ namespace Debond
   /// How far the loop has come.
   struct AdaptiveProgress
   {
-    /// Of the meshes that are done.
+    /// The meshes that are done.
     std::vector<AdaptiveLevel> levels;
 
     /// How often the cells of each mesh are cut for the next one, see
     /// BisectedBody::refined().
     std::vector<std::vector<unsigned int>> divisions;
 
-    /// Where to start on the last of these meshes; empty for rest.
+    /// The start on the last of these meshes; empty for rest.
     DofVector start;
   };
 
@@ -41,7 +41,7 @@ namespace Debond
     std::function<void(const AdaptiveProgress &, const Scene<dim> &)>
       next_mesh_is_made;
 
-    /// Of a load path on any of the meshes.
+    /// Called at each step of a load path, on any of the meshes.
     LoadPathObserver<dim> step_is_done;
   };
 
@@ -53,7 +53,7 @@ namespace Debond
     SolveResult       solve; ///< on the last mesh
     FollowedPath<dim> path;  ///< if the scene has one
 
-    /// What kept the loop from its target; empty if nothing did.
+    /// The reason why the loop has not reached its target; empty if it has.
     std::string shortfall;
   };
 

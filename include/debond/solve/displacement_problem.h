@@ -72,7 +72,7 @@ namespace Debond
     Vector                           &u;
     const Interruption               &interruption;
 
-    /// As of the last evaluate().
+    /// The state of the last evaluate().
     Vector internal;            ///< A u
     double largest_force  = 0.; ///< what residuals are relative to
     double force_rounding = 0.; ///< what rounding leaves in A u
@@ -82,7 +82,7 @@ namespace Debond
     Eigen::VectorXd             b_c;
     ActiveSet                   active;
 
-    /// What the cycle is prepared for.
+    /// The majorant and the contact set that the cycle is prepared for.
     bool                        is_prepared = false;
     Eigen::SparseMatrix<double> cycle_E;
     ActiveSet                   cycle_active;

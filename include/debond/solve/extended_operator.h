@@ -71,8 +71,8 @@ namespace Debond
     const ElasticProblem<dim> &problem;
     std::vector<Cell>          cells;
 
-    /// Of the basis functions but the first at each point of strain_rule(), by
-    /// all barycentric coordinates but the first.
+    /// The gradients of the basis functions but the first at each point of
+    /// strain_rule(), by all barycentric coordinates but the first.
     std::vector<std::vector<Gradient>> reference_gradients;
   };
 } // namespace Debond

@@ -16,7 +16,8 @@ namespace Debond
   template <int dim>
   struct LoadPathState
   {
-    /// What is known of it among the minima; empty if it is no solution.
+    /// The word for it among the minima (to_string()); empty if it is no
+    /// solution.
     std::string minimum;
 
     double functional;      ///< J
@@ -27,9 +28,9 @@ namespace Debond
     /// to the factor, since dJ/d(factor) = -<f, u> along a branch.
     double unit_load_work;
 
-    /// The same for prescribed displacements: the work of the supports' forces
-    /// on what they prescribe with factor 1, the derivative of J by their
-    /// factor. If that is one displacement of 1, its reaction.
+    /// The work of the supports' forces on what they prescribe with factor 1,
+    /// the derivative of J by the factor of prescribed displacements. If that
+    /// is one displacement of 1, its reaction.
     double unit_displacement_work;
 
     /// Parts of the contact boundary by its nodes' measures. Open boundary
@@ -59,9 +60,9 @@ namespace Debond
 
     std::vector<dealii::Point<dim>> fronts; ///< see fronts()
 
-    /// Of the contact faces where bonds that hold meet bonds that do not, or
-    /// none, the largest size over E* / a, 0 if there are none. E* is E / (1 -
-    /// nu^2), a the stiffness of the bonds.
+    /// The largest size over E* / a of the contact faces where bonds that hold
+    /// meet bonds that do not, or none; 0 if there are no such faces. E* is E /
+    /// (1 - nu^2), a the stiffness of the bonds.
     double cell_size_at_edge;
 
     double dissipated_energy; ///< by bonds that do not heal

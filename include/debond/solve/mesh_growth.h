@@ -42,13 +42,14 @@ namespace Debond
     }
   };
 
-  /// What J and the estimates of its error on the meshes so far say of the last
-  /// one, and how many times its cells the next one has.
+  /// The growth of meshes that are refined: J and the estimates of its error on
+  /// the meshes so far tell the error of the last one, and how many times its
+  /// cells the next one has.
   class MeshGrowth
   {
   public:
-    /// Of displacements of a @p degree in @p dim dimensions. Keeps a reference
-    /// to @p accuracy.
+    /// Sets the exponents for displacements of a @p degree in @p dim
+    /// dimensions. Keeps a reference to @p accuracy.
     MeshGrowth(const AccuracyParameters &accuracy,
                const unsigned int        dim,
                const unsigned int        degree);
@@ -59,13 +60,14 @@ namespace Debond
     void
     add(AdaptiveLevel &level);
 
-    /// Whether the error of the last mesh is at most the target, whatever the
-    /// factor is if it has not been measured.
+    /// Returns whether the error of the last mesh is at most the target,
+    /// whatever the factor is if it has not been measured.
     bool
     meets_target() const;
 
-    /// That of the next mesh: equal steps to the mesh that meets the target,
-    /// or to the largest one that is allowed, and enough to measure the factor.
+    /// Returns the growth to the next mesh: equal steps to the mesh that meets
+    /// the target, or to the largest one that is allowed, and enough to measure
+    /// the factor.
     double
     next() const;
 

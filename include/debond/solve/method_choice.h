@@ -22,7 +22,7 @@ namespace Debond
     constexpr const char *majorise_minimise = "majorise minimise";
   } // namespace SolverMethod
 
-  /// What solves the linear systems of a method.
+  /// The solvers of a method's linear systems.
   namespace LinearSolver
   {
     constexpr const char *automatic = "automatic";
@@ -35,7 +35,7 @@ namespace Debond
 
 
 
-  /// What solves a scene, and why it was chosen.
+  /// The method that solves a scene, and why it was chosen.
   struct MethodChoice
   {
     std::string method;
@@ -45,10 +45,10 @@ namespace Debond
     /// Estimate of the program's peak, in bytes.
     double memory = 0.;
 
-    /// Whether multigrid has the coarser meshes of the body, not only A.
+    /// True if multigrid has the coarser meshes of the body, not only A.
     bool has_levels = false;
 
-    /// Whether the method sees the problem condensed onto the contact normals,
+    /// True if the method sees the problem condensed onto the contact normals,
     /// which multigrid does only where the method needs it.
     bool is_condensed = false;
   };
@@ -65,16 +65,16 @@ namespace Debond
   double
   memory_of_factorisation(const unsigned int dim, const double n);
 
-  /// The same with the linear solver of @p wanted, if it is automatic with the
-  /// one that takes less.
+  /// Returns this estimate with the linear solver of @p wanted, if it is
+  /// automatic with the one that takes less.
   double
   least_memory(const MethodChoice &wanted,
                const unsigned int  dim,
                const double        n);
 
-  /// What the scene says of the method, or what follows from that; the linear
-  /// solver may stay automatic. Throws BadInput if the scene asks for a method
-  /// and a linear solver that do not go together.
+  /// Returns the method that the scene asks for, or the one that follows from
+  /// its entries; the linear solver may stay automatic. Throws BadInput if the
+  /// scene asks for a method and a linear solver that do not go together.
   MethodChoice
   choose_method(const ProblemParameters &problem,
                 const SolverParameters  &solver);
@@ -87,12 +87,14 @@ namespace Debond
                        const SolverParameters &solver,
                        MethodChoice           &choice);
 
-  /// What to say where a factorisation takes the place of multigrid.
+  /// The beginning of the note where a factorisation takes the place of
+  /// multigrid.
   constexpr const char *multigrid_has_failed =
     "multigrid did not converge, and a factorisation has taken its place: ";
 
-  /// The same choice with a factorisation, where multigrid has ended with this
-  /// @p status, which is no solution; none if that does not fit into memory.
+  /// Returns @p choice with a factorisation, where multigrid has ended with
+  /// this @p status, which is no solution; none if that does not fit into
+  /// memory.
   template <int dim>
   std::optional<MethodChoice>
   factorisation_instead(const Scene<dim>       &scene,

@@ -17,8 +17,8 @@ namespace Debond
     unsigned int systems           = 0; ///< linear systems
     unsigned int linear_iterations = 0; ///< for all of them
 
-    /// Of the last point in the energy norm, relative, as the solver of
-    /// corrections sees it.
+    /// The relative error of the last point in the energy norm, as the solver
+    /// of corrections sees it.
     double error = 0.;
   };
 
@@ -75,7 +75,7 @@ namespace Debond
   {
     bool is_refined = false; ///< u is a minimiser in extended precision
 
-    /// What the user should know of it, empty if all is as in any other scene.
+    /// The note for the user, empty if all is as in any other scene.
     std::string note;
   };
 

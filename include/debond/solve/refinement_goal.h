@@ -11,14 +11,14 @@
 
 namespace Debond
 {
-  /// What a RefinementGoal says of the result on a mesh.
+  /// The opinion of a RefinementGoal on the result on a mesh.
   struct GoalOnMesh
   {
     bool   is_reached = false;
     double width      = 0.; ///< of what is to become narrow, relative to J
 
-    /// Of each active cell: the next mesh is refined where they are large, by
-    /// the estimated error if there are none.
+    /// A number for each active cell: the next mesh is refined where they are
+    /// large, by the estimated error if there are none.
     std::vector<double> parts;
 
     std::string shortfall; ///< what it is short of its goal by
@@ -27,15 +27,15 @@ namespace Debond
 
 
 
-  /// What a loop that refines meshes is to reach besides an estimated error.
+  /// A goal, besides an estimated error, of a loop that refines meshes.
   template <int dim>
   class RefinementGoal
   {
   public:
     virtual ~RefinementGoal() = default;
 
-    /// Of the @p result on the mesh of @p scene; called once more for the same
-    /// one with @p is_last if there can be no finer mesh.
+    /// Looks at the @p result on the mesh of @p scene; called once more for the
+    /// same one with @p is_last if there can be no finer mesh.
     virtual GoalOnMesh
     look(const std::shared_ptr<const Scene<dim>> &scene,
          const SolveResult                       &result,

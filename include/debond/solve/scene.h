@@ -45,7 +45,7 @@ namespace Debond
 
     Scene(const Scene &) = delete;
 
-    /// What it was made of, on whatever mesh.
+    /// The parameters that the scene was made of, on whatever mesh.
     const ProblemParameters &
     parameters() const
     {
@@ -58,7 +58,7 @@ namespace Debond
       return *elastic_body;
     }
 
-    /// That share the scene.
+    /// The ranks that share the scene.
     MPI_Comm
     ranks() const
     {
@@ -83,7 +83,7 @@ namespace Debond
       return *elastic_problem;
     }
 
-    /// What acts on which boundaries and regions of the mesh.
+    /// The boundaries and regions of the mesh, and what acts on them.
     const BoundaryConditions &
     conditions() const
     {
@@ -108,7 +108,7 @@ namespace Debond
       return body_loads;
     }
 
-    /// Those that do not grow with the load factor.
+    /// The loads that do not grow with the load factor.
     const Loads<dim> &
     dead_loads() const
     {
@@ -141,7 +141,7 @@ namespace Debond
       return first_iterate;
     }
 
-    /// What the scene wants to know by name.
+    /// The numbers that the scene asks for by name.
     const Probes<dim> &
     probes() const
     {
@@ -155,7 +155,7 @@ namespace Debond
       return piece_means;
     }
 
-    /// What the user should know of the body's pieces.
+    /// The notes on the body's pieces for the user.
     const std::vector<std::string> &
     notes() const
     {
@@ -201,7 +201,8 @@ namespace Debond
     void
     add_contact();
 
-    /// What is unusual about the contact boundary and its unknowns.
+    /// Adds notes on what is unusual about the contact boundary and its
+    /// unknowns.
     void
     add_notes();
 

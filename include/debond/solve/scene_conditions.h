@@ -16,8 +16,9 @@
 
 namespace Debond
 {
-  /// What is clamped and in contact, on a mesh whose pieces have these names.
-  /// Throws EntryError, also if bodies at an interface are not in contact.
+  /// Returns what is clamped and in contact, on a mesh whose pieces have these
+  /// names. Throws EntryError, also if bodies at an interface are not in
+  /// contact.
   BoundaryConditions
   make_conditions(const ProblemParameters &given, const PieceNames &names);
 
@@ -39,7 +40,7 @@ namespace Debond
                   const AdhesiveLaw        &law,
                   const BoundaryConditions &conditions);
 
-  /// Of prescribed displacements, at all steps.
+  /// Returns the factors of prescribed displacements at all steps.
   std::vector<double>
   displacement_factors(const LoadPathParameters &load_path);
 

@@ -26,7 +26,8 @@ namespace Debond
         const bool              terminal = false,
         const DofVector        *start    = nullptr);
 
-  /// The same by a ContactSolver. What it cannot do ends with a status.
+  /// Solves by a ContactSolver. A method that does not come to its end says so
+  /// by a status.
   template <int dim>
   void
   solve_contact(const MethodChoice     &choice,

@@ -16,7 +16,7 @@
 
 namespace Debond
 {
-  /// What every method reports.
+  /// The report of every method.
   struct SolveResult
   {
     SolverStatus status = SolverStatus::success;
@@ -35,12 +35,12 @@ namespace Debond
     unsigned int short_steps = 0;
     unsigned int null_steps  = 0;
 
-    /// Of the stop criterion: v_k of a bundle method, the relative residual of
-    /// majorise-minimise. A refined result is better than that.
+    /// The figure of the stop criterion: v_k of a bundle method, the relative
+    /// residual of majorise-minimise. A refined result is better than that.
     double criterion = 0.;
 
-    /// Of the paper's method, whose stop tolerance is an energy: |v_k| over the
-    /// strain energy, if there is any.
+    /// The relative descent |v_k| over the strain energy, if there is any, in
+    /// the paper's method, whose stop tolerance is an energy.
     std::optional<double> relative_descent = {};
 
     /// u is a minimiser in extended precision, from where the method ended.
@@ -50,10 +50,11 @@ namespace Debond
 
     unsigned int linear_iterations = 0; ///< of conjugate gradients
 
-    /// Of the elastic problem on the contact normals, if there is one.
+    /// An estimate of the condition of the elastic problem on the contact
+    /// normals, if there is one.
     std::optional<double> condition_estimate;
 
-    /// Of a success.
+    /// The kind of the minimum, of a success.
     WhichMinimum minimum;
 
     /// J of the state that the method led to, if search and proof could replace
@@ -61,7 +62,8 @@ namespace Debond
     std::optional<double> functional_from_start;
     bool                  is_replaced = false;
 
-    /// What did not go as it should without keeping the method from its end.
+    /// The notes on what did not go as it should without keeping the method
+    /// from its end.
     std::vector<std::string> notes;
 
     /// Wall seconds by part.

@@ -13,7 +13,7 @@
 
 namespace Debond
 {
-  /// What is known of a result among the stationary points of J.
+  /// The kind of a result among the stationary points of J.
   enum class MinimumKind
   {
     stationary,    ///< it satisfies the contact law
@@ -57,8 +57,8 @@ namespace Debond
 
 
 
-  /// Whether a search for lower minima is asked for, by a method that ends at
-  /// one of them.
+  /// Returns whether a search for lower minima is asked for, by a method that
+  /// ends at one of them.
   bool
   wants_search(const SolverParameters &parameters);
 

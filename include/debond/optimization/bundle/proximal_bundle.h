@@ -140,9 +140,9 @@ namespace Debond
              DofVector         &x,
              const Monitor     &monitor = {}) const;
 
-    /// The same in the metric of @p direction_problem, which also knows K and
+    /// Minimises in the metric of @p direction_problem, which also knows K and
     /// has to have room for `bundle_size` subgradients; the parameter u is not
-    /// used. One method, whatever the metric.
+    /// used. The method is one, whatever the metric.
     ProximalBundleResult
     minimize(const Objective  &objective,
              DirectionProblem &direction_problem,

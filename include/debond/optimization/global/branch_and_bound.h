@@ -30,7 +30,7 @@ namespace Debond
 
 
 
-  /// Where the proof stands.
+  /// The state of a proof.
   struct ProofProgress
   {
     unsigned int nodes;

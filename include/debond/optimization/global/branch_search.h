@@ -14,7 +14,7 @@
 
 namespace Debond
 {
-  /// What a search needs to know of a problem. Keeps references.
+  /// A problem as a search needs to know it. Keeps references.
   struct SearchProblem : public PiecewiseProblem
   {
     /// Says on which branch a node is (lumped_branches()).
@@ -26,7 +26,7 @@ namespace Debond
     /// For starts, which are far from the point that they are made from.
     const ActiveSetGuess *guess = nullptr;
 
-    /// Where search and proof add up what they have done
+    /// The sum to which search and proof add what they have done
     /// (BoundQPResult::operations), if it is not null.
     WorkLimit *work = nullptr;
   };
@@ -52,13 +52,13 @@ namespace Debond
   {
     double functional = 0.; ///< of the best point
 
-    /// Whether all moves were tried from there.
+    /// True if all moves were tried from there.
     bool complete = true;
 
     /// States minimised, and those that lowered the functional.
     unsigned int trials = 0, improvements = 0;
 
-    /// Of the states minimised, those that led to no minimum.
+    /// The number of states minimised that led to no minimum.
     unsigned int failures = 0;
   };
 

@@ -98,8 +98,8 @@ namespace Debond
     PiecewiseEnergy
     minimum() const;
 
-    /// Whether s, or what a tenth of a kink's distance from 0 takes it to, is
-    /// on a line.
+    /// Returns whether s, or what a tenth of a kink's distance from 0 takes it
+    /// to, is on a line.
     bool
     is_rounded_near(const double s) const;
 

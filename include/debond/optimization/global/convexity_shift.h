@@ -18,7 +18,7 @@ namespace Debond
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A);
 
-  /// Whether safe_inverse() has a result, at a third of its cost.
+  /// Returns whether safe_inverse() has a result, at a third of its cost.
   bool
   is_safely_positive_definite(const Eigen::MatrixXd &A);
 

@@ -29,7 +29,7 @@ namespace Debond
 
 
 
-  /// What NodeBound finds out of a node.
+  /// The findings of NodeBound about a node.
   struct NodeResult
   {
     /// The unknown to branch on next, where, and bounds of the upper and the
@@ -44,7 +44,7 @@ namespace Debond
 
 
 
-  /// Where points of a node are: the functional is at least
+  /// A ball with the points of a node: the functional is at least
   ///     value + 1/2 (s - x)'A (s - x)
   /// in the node's box.
   struct NodeBall

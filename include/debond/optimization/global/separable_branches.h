@@ -46,7 +46,7 @@ namespace Debond
                  const VectorView &ds,
                  const double      limit) const override;
 
-    /// Whether all pieces are quadratic.
+    /// Returns whether all pieces are quadratic.
     bool
     is_piecewise_quadratic() const;
 

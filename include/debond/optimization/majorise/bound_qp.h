@@ -53,8 +53,8 @@ namespace Debond
     SolverStatus status = SolverStatus::quadratic_program;
     unsigned int steps  = 0; ///< factorisations
 
-    /// What it took, in multiplications with an addition each: the same on
-    /// every machine.
+    /// The cost in multiplications with an addition each: the same on every
+    /// machine.
     double operations = 0.;
 
     Eigen::VectorXd x;

@@ -34,7 +34,7 @@ namespace Debond
       const MatrixView                               &S,
       const std::vector<Eigen::SparseMatrix<double>> &prolongations);
 
-    /// Whether there are no subspaces.
+    /// Returns whether there are no subspaces.
     bool
     empty() const
     {

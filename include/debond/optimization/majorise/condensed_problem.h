@@ -68,12 +68,12 @@ namespace Debond
     minimise(const double tolerance) override;
 
   private:
-    /// Where Phi softens majorants are too stiff to come far, and where J is
-    /// not convex they crawl. From s, to which a majorant has led from @p
-    /// before: a Newton step for the bounds that are not active, or, if J is
-    /// not convex, the way along which it is least so, by a power iteration
-    /// that begins with the step of the majorant. As far as J falls, so that no
-    /// barrier is crossed.
+    /// Moves s, to which a majorant has led from @p before, to where J stops
+    /// falling on a line. Where Phi softens majorants are too stiff to come
+    /// far, and where J is not convex they crawl. The line is a Newton step for
+    /// the bounds that are not active, or, if J is not convex, the way along
+    /// which it is least so, by a power iteration that begins with the step of
+    /// the majorant. J falls all the way, so that no barrier is crossed.
     void
     fall(const Eigen::VectorXd &before);
 
@@ -92,7 +92,8 @@ namespace Debond
     const PiecewiseQuadratic &phi;
     Eigen::VectorXd          &s;
 
-    /// What the majorant's bonds hold a rigid motion by, at most as rounding.
+    /// The stiffness by which the majorant's bonds hold a rigid motion at most
+    /// as rounding does.
     double loose_stiffness = 0.;
 
     /// Orthonormal motions of N that the majorant's bonds hold by at most
@@ -107,8 +108,8 @@ namespace Debond
       return v.dot(E * v);
     }
 
-    /// Whether the majorant has no minimum: no pressures of the foundation
-    /// balance what its forces do along the columns of Z.
+    /// Returns whether the majorant has no minimum: no pressures of the
+    /// foundation balance what its forces do along the columns of Z.
     bool
     falls_along(const Eigen::MatrixXd &Z) const;
 

@@ -56,7 +56,7 @@ namespace Debond
       unsigned int active_set_steps;  ///< linear systems
       unsigned int linear_iterations; ///< for all of them, 0 if factorised
 
-      /// Of dense factorisations (BoundQPResult::operations).
+      /// The operations of dense factorisations (BoundQPResult::operations).
       double operations = 0.;
     };
 
@@ -133,7 +133,7 @@ namespace Debond
     MajoriseMinimiseResult
     minimize(MajorantProblem &problem, const Monitor &monitor = {}) const;
 
-    /// Whether a point in this state ends the method with success.
+    /// Returns whether a point in this state ends the method with success.
     bool
     has_converged(const MajorantProblem::State &state) const
     {
