@@ -7,11 +7,11 @@ the sides by their places.
 """
 
 import pathlib
-import random
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from random_scenes import Draw, geometry
 from run_scenes import Scenes
 
 scenes = Scenes(sys.argv[1])
@@ -34,32 +34,10 @@ FORMATS = {"1": ("msh", "-format msh1", False),
 PLACES = {"left": "x < 1e-6", "right": "x > 1 - 1e-6", "bottom": "y < 1e-6"}
 
 
-def geometry(dim, rng):
-    sizes = [rng.uniform(0.1, 0.4) for _ in range(4)]
-    corners = zip([(0, 0), (1, 0), (1, 1), (0, 1)], sizes)
-    text = [f"Point({n}) = {{{x}, {y}, 0, {size!r}}};"
-            for n, ((x, y), size) in enumerate(corners, 1)]
-    text += ["Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};",
-             "Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4};",
-             "Plane Surface(1) = {1};"]
-    if dim == 2:
-        sides, kind, body = [1, 2, 4], "Curve", "Physical Surface"
-        whole = "1"
-    else:
-        text.append("out[] = Extrude {0, 0, 1} { Surface{1}; };")
-        sides, kind, body = ["out[2]", "out[3]", "out[5]"], "Surface", \
-            "Physical Volume"
-        whole = "out[1]"
-    text += [f'Physical {kind}("{name}") = {{{side}}};'
-             for name, side in zip(["bottom", "right", "left"], sides)]
-    text.append(f'{body}("body") = {{{whole}}};')
-    return "\n".join(text) + "\n"
-
-
 def check_body(dim):
     """In all formats."""
     geo = scenes.directory / f"body-{dim}.geo"
-    geo.write_text(geometry(dim, random.Random(dim)))
+    geo.write_text(geometry(dim, Draw(dim)))
     load = ["Loads/Traction right=0.001; -0.001" + "; 0" * (dim - 2), f"Dimension={dim}",
             "Mesh/Source=file", "Boundary conditions/Clamped boundaries=left",
             "Boundary conditions/Contact boundary=bottom"]

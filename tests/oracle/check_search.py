@@ -6,47 +6,14 @@ beside branch and bound: at most 1 of 100 scenes, where it has proved the minimu
 lower one; and on a pad whose least J is far below that of its plain stationary point, what
 searches and proofs of all lengths say. Small scenes are beside enumeration in
 check_shapes.py."""
-import math
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from random_scenes import Draw
+from random_scenes import Draw, patched_scene
 from run_scenes import Scenes
 
 scenes = Scenes(sys.argv[1])
-
-
-def waves(draw, length):
-    """A load along x that changes its sign."""
-    n = draw.uniform(0.6, 8.)
-    if draw.chance(0.5):
-        return (f"{draw.uniform(0.5, 1.5)}*sin({2. * math.pi * n / length}*x"
-                f"+{draw.uniform(0., 6.28)})+{draw.uniform(-0.5, 0.8)}")
-    load = repr(draw.uniform(-1., 1.5))
-    for k in range(int(n) + 2):
-        step = (-1.)**k * draw.uniform(0.2, 1.5)
-        load = f"if(x<{length * draw.uniform(0., 1.)},{step},{load})"
-    return load
-
-
-def random_scene(draw):
-    """Entries but for the law, and the height."""
-    kind = draw.choice(["bar", "strip", "pad", "plate"])
-    length = draw.uniform(1., 3.)
-    height = length * draw.magnitude(-1.6, -0.6)
-    clamped = {"strip": "left", "pad": "top"}.get(kind, "left, right")
-    loaded, load = "bottom" if kind == "pad" else "top", waves(draw, length)
-    scene = [f"Material/Poisson ratio={draw.uniform(0., 0.45)}", "Material/Young modulus=1",
-             "Boundary conditions/Clamped boundaries=" + clamped, "Solver/Method=automatic",
-             "Contact law/Tangential displacement=" + draw.choice(["fixed", "free"])]
-    if kind == "plate":
-        return scene + [
-            "Dimension=3", f"Mesh/Lengths={length}, {height}, {length * draw.uniform(0.2, 0.6)}",
-            f"Mesh/Cells={draw.between(8, 14)}, 1, {draw.between(3, 6)}",
-            f"Loads/Traction {loaded}=0; ({load})*(1+{draw.uniform(-0.8, 0.8)}*z); 0"], height
-    return scene + [f"Mesh/Lengths={length}, {height}", f"Loads/Traction {loaded}=0; {load}",
-                    f"Mesh/Cells={draw.between(40, 140)}, {draw.between(1, 4)}"], height
 
 
 def check_word(name, result, least):
@@ -89,7 +56,7 @@ def main(count=5, first=0):
     while tried < count:
         draw = Draw(first + number)
         number += 1
-        scene, height = random_scene(draw)
+        scene, height = patched_scene(draw)
         opening = scenes.solve(*scene, "Contact law/Law=none")["largest_opening"]
         if not opening:
             continue

@@ -10,62 +10,10 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-from types import SimpleNamespace
 
 from check_shapes import Result, WrongResult
 from oracle import EXACT, Body
-from random_scenes import Field, Mesh, Scene, crossed, volume
-
-
-class Box(Mesh):
-    """Cut as the program does it."""
-
-    def __init__(self, lengths, cells):
-        self.dim, self.length, self.cells = len(cells), max(lengths), cells
-        parts = [part for low in itertools.product(*map(range, cells))
-                 for part in crossed(tuple(2 * i for i in low), tuple(2 * i + 2 for i in low))]
-        keys = sorted({key for part in parts for key in part})
-        number = {key: n for n, key in enumerate(keys)}
-        self.points = [self.point(lambda *at: tuple(
-            length * i / n for length, i, n in zip(lengths, at, cells)), key) for key in keys]
-        self.along = [key[0] for key in keys]
-        self.simplices = [[number[key] for key in part] for part in parts]
-        for part in self.simplices:
-            if volume([self.points[v] for v in part]) < 0.:
-                part[-2:] = part[:-3:-1]
-        self.sides = self.boundary(number, [(part[:k] + part[k + 1:], part[k])
-                                            for part in parts for k in range(len(part))])
-
-
-class Strip(Scene):
-    """A scene of which all is given."""
-
-    def __init__(self, lengths, cells, E, a, M, clamped, loads, law="winkler",
-                 tangential="free", nu=0.33, hypothesis="plane stress"):
-        self.mesh, self.dim = Box(lengths, cells), len(cells)
-        self.E, self.nu, self.a, self.M = E, nu, a, M
-        self.is_plane_stress = self.dim == 2 and hypothesis == "plane stress"
-        self.clamped, self.rollers, self.moved, self.loads = clamped, [], [], loads
-        self.contact, self.quadrature, self.steps = ["bottom"], "nodal", [(1., 1.)]
-        if law == "none":
-            self.steps = []
-        self.expansion = 0.
-        self.bonds = {"bottom": SimpleNamespace(
-            stiffness=Field(a), threshold=Field(M), gap=Field(0.),
-            is_tangential_fixed=tangential == "fixed")}
-        self.contact_faces = [("bottom", *face) for face in self.mesh.sides["bottom"]]
-        self.settings = {}
-        for path, value in {
-                "Dimension": self.dim, "Mesh/Lengths": ", ".join(map(repr, lengths)),
-                "Mesh/Cells": ", ".join(map(str, cells)), "Material/Young modulus": E,
-                "Material/Poisson ratio": nu, "Material/Hypothesis": hypothesis,
-                "Boundary conditions/Clamped boundaries": ", ".join(clamped),
-                "Contact law/Law": law, "Contact law/Tangential displacement": tangential,
-                "Contact law/Bond stiffness": a, "Contact law/Bond threshold": M,
-                "Output/Displacement": "true", "Output/Matrices": "true",
-                "Output/Directory": "output", **{path: "; ".join(map(str, load))
-                                                 for path, load in loads.items()}}.items():
-            self.set(path, str(value))
+from random_scenes import Field, Strip
 
 
 def strip(aspect, cells, clamped="left", law="winkler", tangential="free", unit=1., stress=1.):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random scenes for check_shapes.py: bodies cut in triangles or tetrahedra, with all
-that their scene files say of them."""
+"""Random and other scenes beside which the program is tested: bodies cut in triangles or
+tetrahedra, with all that their scene files say of them, for oracle.py (random ones, and slender
+boxes of which all is given); entries of bodies with many patches for check_search.py; geometries
+for check_formats.py. Shares nothing with the program."""
 
 import collections
 import itertools
@@ -11,6 +13,7 @@ import sys
 from types import SimpleNamespace
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import msh
 from run_scenes import sawteeth
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
@@ -134,19 +137,7 @@ class Mesh:
         keys.sort(key=lambda key: any(x % 2 for x in key))
         self.n_corners = sum(not any(x % 2 for x in key) for key in keys)
         place = self.box(draw) if self.kind == "box" else self.map(draw)
-        self.points = [self.point(place, key) for key in keys]
-        self.along = [key[0] for key in keys]  # an order for elimination
-        number = {key: n for n, key in enumerate(keys)}
-
-        def positive(part):
-            numbers = [number[key] for key in part]
-            turned = volume([self.points[n] for n in numbers]) < 0.
-            return numbers[:-2] + numbers[:-3:-1] if turned else numbers
-
-        self.simplices = [positive(part) for part in parts]
-        self.sides = self.boundary(
-            number, [(part[:k] + part[k + 1:], part[k]) for part in parts
-                     for k in range(dim + 1)])
+        number = self.fill(parts, keys, place)
         if self.style == "bricks":
             self.file_cells = [[number[c] for c in corners(*box)] for box in boxes]
             edges = [self.points[self.file_cells[0][c]] for c in (0, 1, 3, 4)[:dim + 1]]
@@ -161,6 +152,24 @@ class Mesh:
             self.file_cells = self.simplices
             self.file_sides = self.sides
         self.reverses_faces = draw.chance(0.2)
+
+    def fill(self, parts, keys, place):
+        """Points, simplices and sides, from parts that are lists of corners of the grid; the
+        corners in their order, and where they are. Returns the numbers of the corners."""
+        self.points = [self.point(place, key) for key in keys]
+        self.along = [key[0] for key in keys]  # an order for elimination
+        number = {key: n for n, key in enumerate(keys)}
+
+        def positive(part):
+            numbers = [number[key] for key in part]
+            turned = volume([self.points[n] for n in numbers]) < 0.
+            return numbers[:-2] + numbers[:-3:-1] if turned else numbers
+
+        self.simplices = [positive(part) for part in parts]
+        self.sides = self.boundary(
+            number, [(part[:k] + part[k + 1:], part[k]) for part in parts
+                     for k in range(self.dim + 1)])
+        return number
 
     def draw_cells(self, draw):
         """The numbers of boxes along the axes."""
@@ -309,27 +318,25 @@ class Mesh:
 
     def text(self):
         """A file of version 2.2."""
-        dim = self.dim
         n_points = self.n_corners if self.style == "bricks" else len(self.points)
-        types = {(1, 2): 1, (2, 3): 2, (2, 4): 3, (3, 4): 4, (3, 8): 5}
-        elements = []
-        for group, side in enumerate(sorted(self.file_sides), 1):
-            for face, _ in self.file_sides[side]:
-                elements.append((dim - 1, group,
-                                 face[::-1] if self.reverses_faces else face))
-        elements += [(dim, 99, cell) for cell in self.file_cells]
-        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames",
-                 str(len(self.file_sides))]
-        lines += [f'{dim - 1} {group} "{side}"'
-                  for group, side in enumerate(sorted(self.file_sides), 1)]
-        lines += ["$EndPhysicalNames", "$Nodes", str(n_points)]
-        lines += [f"{n} " + " ".join(map(repr, (*point, 0.)[:3]))
-                  for n, point in enumerate(self.points[:n_points], 1)]
-        lines += ["$EndNodes", "$Elements", str(len(elements))]
-        lines += [f"{n} {types[d, len(numbers)]} 2 {group} 1 "
-                  + " ".join(str(v + 1) for v in numbers)
-                  for n, (d, group, numbers) in enumerate(elements, 1)]
-        return "\n".join(lines + ["$EndElements", ""])
+        sides = sorted(self.file_sides)
+        return msh.text(
+            self.points[:n_points],
+            [((group,), face[::-1] if self.reverses_faces else face)
+             for group, side in enumerate(sides, 1) for face, _ in self.file_sides[side]],
+            [((99,), cell) for cell in self.file_cells],
+            {(self.dim - 1, group): side for group, side in enumerate(sides, 1)})
+
+
+class Box(Mesh):
+    """Of which all is given, cut as the program does it."""
+
+    def __init__(self, lengths, cells):
+        self.dim, self.length, self.cells = len(cells), max(lengths), cells
+        parts = [part for low in itertools.product(*map(range, cells))
+                 for part in crossed(tuple(2 * i for i in low), tuple(2 * i + 2 for i in low))]
+        self.fill(parts, sorted({key for part in parts for key in part}), lambda *at: tuple(
+            length * i / n for length, i, n in zip(lengths, at, cells)))
 
 
 # ------------------------------------------------------------------ the scenes
@@ -556,3 +563,85 @@ class Scene:
             self.loads[path] = [c and c.times(by) for c in components]
             self.set(path, "; ".join("free" if c is None else str(c)
                                      for c in self.loads[path]))
+
+
+class Strip(Scene):
+    """A scene of which all is given."""
+
+    def __init__(self, lengths, cells, E, a, M, clamped, loads, law="winkler",
+                 tangential="free", nu=0.33, hypothesis="plane stress"):
+        self.mesh, self.dim = Box(lengths, cells), len(cells)
+        self.E, self.nu, self.a, self.M = E, nu, a, M
+        self.is_plane_stress = self.dim == 2 and hypothesis == "plane stress"
+        self.clamped, self.rollers, self.moved, self.loads = clamped, [], [], loads
+        self.contact, self.quadrature, self.steps = ["bottom"], "nodal", [(1., 1.)]
+        if law == "none":
+            self.steps = []
+        self.expansion = 0.
+        self.bonds = {"bottom": SimpleNamespace(
+            stiffness=Field(a), threshold=Field(M), gap=Field(0.),
+            is_tangential_fixed=tangential == "fixed")}
+        self.contact_faces = [("bottom", *face) for face in self.mesh.sides["bottom"]]
+        self.settings = {}
+        for path, value in {
+                "Dimension": self.dim, "Mesh/Lengths": ", ".join(map(repr, lengths)),
+                "Mesh/Cells": ", ".join(map(str, cells)), "Material/Young modulus": E,
+                "Material/Poisson ratio": nu, "Material/Hypothesis": hypothesis,
+                "Boundary conditions/Clamped boundaries": ", ".join(clamped),
+                "Contact law/Law": law, "Contact law/Tangential displacement": tangential,
+                "Contact law/Bond stiffness": a, "Contact law/Bond threshold": M,
+                "Output/Displacement": "true", "Output/Matrices": "true",
+                "Output/Directory": "output", **{path: "; ".join(map(str, load))
+                                                 for path, load in loads.items()}}.items():
+            self.set(path, str(value))
+
+
+# ---------------------------------------- entries of scenes without an oracle
+
+
+def waves(draw, length):
+    """A load along x that changes its sign."""
+    n = draw.uniform(0.6, 8.)
+    if draw.chance(0.5):
+        return (f"{draw.uniform(0.5, 1.5)}*sin({2. * math.pi * n / length}*x"
+                f"+{draw.uniform(0., 6.28)})+{draw.uniform(-0.5, 0.8)}")
+    load = repr(draw.uniform(-1., 1.5))
+    for k in range(int(n) + 2):
+        step = (-1.)**k * draw.uniform(0.2, 1.5)
+        load = f"if(x<{length * draw.uniform(0., 1.)},{step},{load})"
+    return load
+
+
+def patched_scene(draw):
+    """Entries but for the law, and the height: a body with many patches."""
+    kind = draw.choice(["bar", "strip", "pad", "plate"])
+    length = draw.uniform(1., 3.)
+    height = length * draw.magnitude(-1.6, -0.6)
+    clamped = {"strip": "left", "pad": "top"}.get(kind, "left, right")
+    loaded, load = "bottom" if kind == "pad" else "top", waves(draw, length)
+    scene = [f"Material/Poisson ratio={draw.uniform(0., 0.45)}", "Material/Young modulus=1",
+             "Boundary conditions/Clamped boundaries=" + clamped, "Solver/Method=automatic",
+             "Contact law/Tangential displacement=" + draw.choice(["fixed", "free"])]
+    if kind == "plate":
+        return scene + [
+            "Dimension=3", f"Mesh/Lengths={length}, {height}, {length * draw.uniform(0.2, 0.6)}",
+            f"Mesh/Cells={draw.between(8, 14)}, 1, {draw.between(3, 6)}",
+            f"Loads/Traction {loaded}=0; ({load})*(1+{draw.uniform(-0.8, 0.8)}*z); 0"], height
+    return scene + [f"Mesh/Lengths={length}, {height}", f"Loads/Traction {loaded}=0; {load}",
+                    f"Mesh/Cells={draw.between(40, 140)}, {draw.between(1, 4)}"], height
+
+
+def geometry(dim, draw):
+    """A square or a cube for Gmsh, of random sizes at the corners."""
+    text = [f"Point({n}) = {{{x}, {y}, 0, {draw.uniform(0.1, 0.4)!r}}};"
+            for n, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)], 1)]
+    text += ["Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};",
+             "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};"]
+    sides, kind, body = (1, 2, 4), "Curve", "Surface(\"body\") = {1};"
+    if dim == 3:
+        text.append("out[] = Extrude {0, 0, 1} { Surface{1}; };")
+        sides, kind = ("out[2]", "out[3]", "out[5]"), "Surface"
+        body = "Volume(\"body\") = {out[1]};"
+    text += [f'Physical {kind}("{name}") = {{{side}}};'
+             for name, side in zip(("bottom", "right", "left"), sides)]
+    return "\n".join(text + ["Physical " + body, ""])
