@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_restart.py DEBOND PRM_DIRECTORY: a run that was killed, or that is to go further, goes on
-to the results of a run in one piece, on another number of ranks too."""
+to the results of a run in one piece, on another number of ranks too; starts from another run."""
 import csv
 import json
 import os
@@ -189,3 +189,23 @@ for damaged in [whole[:5000], b"", *(
 if "starts from the beginning" not in run("benchmark-40x4", "new",
                                           ["Solver/Method=automatic", "--restart"]):
     sys.exit("no word on a missing state")
+
+# A run starts where another one ended, and not from what does not fit its scene. With a proximal
+# weight that large no step is long enough to be taken.
+bar = ["Mesh/Cells=10, 1", "Solver/Method=euclidean bundle",
+       f"Solver/Euclidean bundle/Start={os.getcwd()}/bar/displacement.txt"]
+run("benchmark-40x4", "bar", [*bar[:2], "Solver/Euclidean bundle/Proximal weight=0.05",
+                              "Output/Displacement=true"])
+run("benchmark-40x4", "again", [*bar, "Solver/Euclidean bundle/Proximal weight=1e9"])
+end, again = summary("bar"), summary("again")
+if again["iterations"]["total"] or any(end[key] != again[key]
+                                       for key in ("functional", "law_violation")):
+    sys.exit(f"the end is not the start: {end} {again}")
+other = "is not the displacement of a scene with"
+refused(other, "benchmark-40x4", "start", [*bar, "Mesh/Cells=11, 1"])
+refused("does not satisfy the scene's boundary conditions", "benchmark-40x4", "start",
+        [*bar, "Loads/Traction top=", "Boundary conditions/Clamped boundaries=left, right, top"])
+pathlib.Path("bar/displacement.txt").write_text("0 0 x\n", encoding="utf-8")
+refused(other, "benchmark-40x4", "start", bar)
+pathlib.Path("bar/displacement.txt").unlink()
+refused(other, "benchmark-40x4", "start", bar)
