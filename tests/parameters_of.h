@@ -23,6 +23,14 @@ operator+(Values values, const Values &others)
 
 
 
+inline void
+operator+=(Values &values, const Values &others)
+{
+  values.insert(values.end(), others.begin(), others.end());
+}
+
+
+
 /// With all its digits.
 inline std::string
 text(const double value)
@@ -32,15 +40,6 @@ text(const double value)
   out << value;
   return out.str();
 }
-
-/// As "values + {...}" is no expression.
-inline Values
-with(const Values &values, const Values &more)
-{
-  return values + more;
-}
-
-
 
 /// Of a scene, or of none if that is empty, and what is set beside it. Throws
 /// what the table of a scene throws.

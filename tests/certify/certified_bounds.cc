@@ -165,8 +165,7 @@ namespace
     const double x          = random.uniform(-0.3, 0.3) * height;
     const double y          = height * random.uniform(0.6, 1.);
     const double narrower   = is_sheared ? 0. : random.uniform(0., 0.4);
-    scene.values =
-      scene.values +
+    scene.values +=
       Values{"Mesh/Source=generator",
              "Mesh/Generator=general_cell",
              "Mesh/Arguments=" + point(0., 0.) + ';' + point(length, 0.) + ';' +
@@ -209,9 +208,9 @@ namespace
       points += (k > 0 ? ";" : "") + text((k & 1) * length + (k >> 1 & 1) * x) +
                 ',' + text((k >> 1 & 1) * height) + ',' +
                 text((k >> 2) * width + (k >> 1 & 1) * z);
-    scene.values = scene.values + Values{"Mesh/Source=generator",
-                                         "Mesh/Generator=general_cell",
-                                         "Mesh/Arguments=" + points + ": true"};
+    scene.values += Values{"Mesh/Source=generator",
+                           "Mesh/Generator=general_cell",
+                           "Mesh/Arguments=" + points + ": true"};
     scene.coarse.push_back("Mesh/Refinements=0");
     scene.fine.push_back("Mesh/Refinements=1");
     return {"0", "1", "2", "3", "4"};
@@ -275,26 +274,24 @@ namespace
     const std::string along = is_solid ? "*z; " + text(load()) :
                               from_top ? "*y" :
                                          "*x";
-    scene.values =
-      scene.values +
-      Values{
-        "Dimension=" + std::to_string(dim),
-        "Boundary conditions/Clamped boundaries=" + clamped,
-        "Boundary conditions/Contact boundary=" + sides[2],
-        "Material/Young modulus=" + text(69. * stress),
-        "Material/Poisson ratio=" + text(random.uniform(0., 0.49)),
-        "Material/Hypothesis=" +
-          random.choice<std::string>({"plane stress", "plane strain"}),
-        "Contact law/Tangential displacement=" +
-          random.choice<std::string>({is_moved ? "free" : "fixed", "free"}),
-        std::string("Contact law/Quadrature=gauss ") + (is_solid ? "5" : "8"),
-        "Loads/Traction top=",
-        "Loads/Traction " + sides[from_top ? 1 : 3] + '=' + text(load()) +
-          "; " + text(load()) + '+' + text(load() / unit) + along,
-        "Loads/Body force=0; " + text(random.uniform(-1., 1.) * stress / unit) +
-          (is_solid ? "; 0" : ""),
-        "Solver/Method=automatic",
-        "Solver/Proof/Maximum nodes=200"};
+    scene.values += Values{
+      "Dimension=" + std::to_string(dim),
+      "Boundary conditions/Clamped boundaries=" + clamped,
+      "Boundary conditions/Contact boundary=" + sides[2],
+      "Material/Young modulus=" + text(69. * stress),
+      "Material/Poisson ratio=" + text(random.uniform(0., 0.49)),
+      "Material/Hypothesis=" +
+        random.choice<std::string>({"plane stress", "plane strain"}),
+      "Contact law/Tangential displacement=" +
+        random.choice<std::string>({is_moved ? "free" : "fixed", "free"}),
+      std::string("Contact law/Quadrature=gauss ") + (is_solid ? "5" : "8"),
+      "Loads/Traction top=",
+      "Loads/Traction " + sides[from_top ? 1 : 3] + '=' + text(load()) + "; " +
+        text(load()) + '+' + text(load() / unit) + along,
+      "Loads/Body force=0; " + text(random.uniform(-1., 1.) * stress / unit) +
+        (is_solid ? "; 0" : ""),
+      "Solver/Method=automatic",
+      "Solver/Proof/Maximum nodes=200"};
     using Names           = std::vector<std::string>;
     const std::string law = random.choice(
       is_solid ?
@@ -304,23 +301,21 @@ namespace
       "Contact law/Law=" +
       (law == "unbreakable" || law == "broken" ? "winkler" : law));
     if (law == "curve")
-      scene.values =
-        scene.values +
+      scene.values +=
         Values{"Contact law/Curve=0:0, " + text(M) + ':' + text(a * M) + ", " +
                text(M) + ':' + text(a * M / 3.) + ", " + text(2. * M) + ':' +
                text(a * M * 2. / 3.) + ", " + text(2. * M) + ":0"};
     else if (law != "none")
-      scene.values =
-        scene.values + Values{"Contact law/Bond stiffness=" +
-                                (is_solid || law == "broken" || !is_box ||
-                                     prescribed.uniform(0., 1.) < 0.7 ?
-                                   text(a) :
-                                   "if(x < " + text(length / 2.) + ", " +
-                                     text(a) + ", " + text(a / 3.) + ')'),
-                              "Contact law/Bond threshold=" +
-                                text(law == "unbreakable" ? 1e6 * unit :
-                                     law == "broken"      ? 1e-9 * unit :
-                                                            M)};
+      scene.values += Values{"Contact law/Bond stiffness=" +
+                               (is_solid || law == "broken" || !is_box ||
+                                    prescribed.uniform(0., 1.) < 0.7 ?
+                                  text(a) :
+                                  "if(x < " + text(length / 2.) + ", " +
+                                    text(a) + ", " + text(a / 3.) + ')'),
+                             "Contact law/Bond threshold=" +
+                               text(law == "unbreakable" ? 1e6 * unit :
+                                    law == "broken"      ? 1e-9 * unit :
+                                                           M)};
     if (is_solid || law == "unbreakable" || law == "none")
       scene.kind = CertificateKind::fixed_state;
     scene.is_convex = !is_solid || law == "unbreakable" || law == "none";
