@@ -350,8 +350,10 @@ namespace
           const SolveResult result = solved(parameters, *of);
           if (!can_be_verified(result.status))
             throw Unsolved();
-          return Certifier<dim>(kind, of).certify(
-            result.u, parameters.solver.proof, []() { return true; }, earlier);
+          return Certifier<dim>(kind, of).certify(result.u,
+                                                  parameters.solver.proof,
+                                                  Interruption::by_signal(),
+                                                  earlier);
         };
         certificates.push_back(certify(random.kind, scene, nullptr));
         upper = certificates[0].upper;
@@ -404,7 +406,7 @@ namespace
     const auto       scene      = std::make_shared<const Scene<3>>(parameters);
     const SolveResult result    = solved(parameters, *scene);
     return Certifier<3>(CertificateKind::fixed_state, scene)
-      .certify(result.u, parameters.solver.proof, []() { return true; });
+      .certify(result.u, parameters.solver.proof, Interruption::by_signal());
   }
 
 

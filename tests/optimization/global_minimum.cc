@@ -259,14 +259,20 @@ namespace
     check("its gap is valid",
           std::isfinite(full.lower) && full.lower <= full.upper);
     check("at most a batch more", full.history.back().open <= 2 + 8);
-    unsigned int rounds = 0;
-    const auto   interrupted =
-      branch_and_bound({},
-                       {q.S, q.g, q.phi, [&]() { return ++rounds < 3; }},
-                       Vector::Zero(80));
-    check("stopped by the monitor",
-          interrupted.status == ProofStatus::interrupted);
-    check("at once", rounds == 3);
+    struct ThirdTime : public Interruption
+    {
+      mutable unsigned int asked = 0;
+
+      bool
+      requested() const override
+      {
+        return ++asked >= 3;
+      }
+    } third_time;
+    const auto interrupted =
+      branch_and_bound({}, {q.S, q.g, q.phi, third_time}, Vector::Zero(80));
+    check("interrupted", interrupted.status == ProofStatus::interrupted);
+    check("at once", third_time.asked == 3);
     check("with a valid gap",
           std::isfinite(interrupted.lower) && interrupted.lower <= full.upper);
     BranchAndBoundParameters parameters;

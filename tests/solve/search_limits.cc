@@ -43,7 +43,7 @@ namespace
                                            quadrature);
         Eigen::VectorXd    s = Eigen::VectorXd::Zero(condensed.load().size());
         const WhichMinimum result = find_better_minimum(
-          parameters.solver, adhesion, condensed, []() { return true; }, s);
+          parameters.solver, adhesion, condensed, Interruption::by_signal(), s);
         is_proved = is_proved || result.kind == MinimumKind::global;
         values.push_back(condensed_functional(condensed, adhesion, s));
       }
@@ -86,7 +86,7 @@ namespace
         MajoriseMinimise(solver.majorise_minimise).minimize(problem);
         const Eigen::VectorXd start  = s;
         const WhichMinimum    result = find_better_minimum(
-          solver, scene.adhesion(), condensed, []() { return true; }, s);
+          solver, scene.adhesion(), condensed, Interruption::by_signal(), s);
         if (is_first_rank())
           std::cout << "limit of " << limit
                     << " operations: " << to_string(result.kind) << ", "
