@@ -30,7 +30,9 @@ namespace Debond
       check_certifiable(scene);
       const auto &triangulation =
         scene.problem().unknowns().dof_handler().get_triangulation();
-      // As pressures.
+      // A change of temperature enters as the pressure that it would make if
+      // the body could not move; it belongs to the energy of sigma and not to
+      // its equilibrium.
       std::vector<double> thermal_stresses =
         temperature_changes(triangulation, scene.loads());
       if (!thermal_stresses.empty())
@@ -59,6 +61,8 @@ namespace Debond
       const PiecewiseEnergy &law = scene.law().branches();
       if (!scene.adhesion().points().has_field())
         return law;
+      // Theorem 1 has one law for each side, whose mean stands for all its
+      // points. So bonds have to be the same at all points of the rule.
       std::optional<BondScale> first;
       for (const auto &[barycentric, weight] : side_rule<dim>())
         {
@@ -90,6 +94,9 @@ namespace Debond
               const dealii::Function<dim> *const         gap,
               const double                               largest)
     {
+      // The moments of s = v_nu - gap are the unknowns, and they are those of
+      // v_nu less a linear gap. With quadratic displacements the coefficient of
+      // an edge has to be the mean of its ends for that.
       std::vector<double> values, linear;
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
         {
@@ -122,7 +129,9 @@ namespace Debond
   {
     check_supports(scene.conditions(), scene.supports());
     const ContactBoundary<dim> &boundary = scene.contact_boundary();
-    double                      largest  = 0.;
+    // What the proof does not cover is refused before anything is solved: mean
+    // normals would make v_nu another function than the trace of v on the side.
+    double largest = 0.;
     for (const auto &node : boundary.nodes)
       largest = std::max(largest, std::abs(node.gap));
     for (const auto &face : boundary.faces)
@@ -155,6 +164,9 @@ namespace Debond
       std::vector<CertifiedLength> lengths;
       for (unsigned int k = 0; k < whole.branches().size(); ++k)
         {
+          // A side counts for the least length of a state if its piece is
+          // certain, and for the largest one if its interval meets the piece at
+          // all.
           CertifiedLength length = {whole.name(k), 0., 0.};
           for (unsigned int i = 0; i < sides.size(); ++i)
             {
@@ -199,6 +211,8 @@ namespace Debond
                        const std::array<double, dim> &at_corners,
                        const double                   rounding)
     {
+      // The infimum of c/2 s^2 + (slope + q) s over s <= 0 is at s = -(q +
+      // slope)/c where that pulls, otherwise at 0.
       std::array<double, dim> pull = at_corners;
       for (double &value : pull)
         value += piece.slope;
@@ -275,7 +289,11 @@ namespace Debond
                              Eigen::VectorXd                            r)
     {
       const Eigen::Index n = static_cast<Eigen::Index>(sides.size());
-      Eigen::VectorXd    u_nu(dim * n);
+      // The unknowns are the means w_k = d/|I| int lambda_k v_nu of each side
+      // (w of doc/reference/certificate.md), in which the bonds' energy is 1/2
+      // a |I| ((d+1) |w|^2 - (sum w)^2)/d; here it is added to S and their
+      // slope to g.
+      Eigen::VectorXd u_nu(dim * n);
       for (Eigen::Index i = 0; i < n; ++i)
         {
           // The integral of the square of the linear function with these means.
@@ -297,6 +315,8 @@ namespace Debond
       for (Eigen::Index i = 0; i < dim * n; ++i)
         active[i] = u_nu(i) >= -Tolerance::certificate *
                                  u_nu.template lpNorm<Eigen::Infinity>();
+      // A stagnated iteration does as well: any equilibrated stress gives a
+      // bound, and what is wrong in x only makes it a little lower.
       const BoundQPResult minimum =
         solve_bound_qp(M, r, Eigen::VectorXd::Zero(dim * n), active);
       if (minimum.status != SolverStatus::success &&
@@ -320,11 +340,14 @@ namespace Debond
                       Certificate                        &certificate)
     {
       const std::vector<SideOf<dim>> &sides = equilibrium.mesh.contact_sides;
-      const Eigen::Index      n = static_cast<Eigen::Index>(sides.size());
-      const auto              condensed = equilibrium.condense();
-      const Eigen::MatrixXd   S         = condensed->schur_complement();
-      const Eigen::VectorXd  &g         = condensed->load();
-      std::vector<Trace<dim>> traces;
+      const Eigen::Index n = static_cast<Eigen::Index>(sides.size());
+      // J(v) >= -1/2 int sigma : C^{-1} sigma + int h(sigma_nu) is (1) of
+      // doc/reference/certificate.md. The branch of each side is that of the
+      // result's mean on it.
+      const auto                          condensed = equilibrium.condense();
+      const Eigen::MatrixXd               S = condensed->schur_complement();
+      const Eigen::VectorXd              &g = condensed->load();
+      std::vector<Trace<dim>>             traces;
       std::vector<PiecewiseEnergy::Piece> pieces;
       for (Eigen::Index i = 0; i < n; ++i)
         {
@@ -334,7 +357,9 @@ namespace Debond
       const Eigen::VectorXd x =
         fixed_state_displacement<dim>(sides, traces, pieces, S, g);
 
-      // Of the stresses that x leads to.
+      // The moments of the normal tractions of the stresses that x leads to.
+      // Times d/|I| they are the tractions at the corners, which determine the
+      // linear sigma_nu.
       const Eigen::VectorXd moments    = S * x - g;
       const auto            at_corners = [&](const Eigen::VectorXd &conjugates,
                                   const Eigen::Index     i) {
@@ -343,6 +368,8 @@ namespace Debond
           result[k] = dim * conjugates(k * n + i) / sides[i].measure;
         return result;
       };
+      // Where no bond holds, h is finite only for tractions that do not pull.
+      // What rounding pulls is measured by the largest traction.
       double largest_traction = 0.;
       for (Eigen::Index i = 0; i < n; ++i)
         for (const Eigen::VectorXd *of : {&moments, &g})
@@ -353,6 +380,8 @@ namespace Debond
         equilibrium.stresses(condensed->expand(x));
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper = equilibrium.elastic_functional(fields, displacement);
+      // The parts of the gap, cell by cell and side by side, are not negative;
+      // they say where a finer mesh would pay.
       certificate.gaps =
         equilibrium.constitutive_gaps(fields, displacement, stresses);
       for (const auto &stress : equilibrium.mean_stresses(stresses))
@@ -421,6 +450,8 @@ namespace Debond
   void
   intersect(Certificate &certificate, const Certificate &other)
   {
+    // Intervals of different meshes are for the same number only if that is the
+    // least J of the continuous problem with its own loads.
     if (!is_for_least(certificate) || !is_for_least(other))
       return;
     certificate.lower = std::max(certificate.lower, other.lower);
@@ -439,6 +470,8 @@ namespace Debond
                 CertifiedMinimum::fixed_state)
     , equilibrium(equilibrium_problem(*scene))
   {
+    // Laws and trace constants Lambda_I depend on the mesh alone, so that they
+    // are found once for all results on it.
     for (const SideOf<dim> &side : equilibrium.mesh.contact_sides)
       laws.push_back(law_of_side<dim>(side.corners, side.id, *scene));
     if constexpr (dim == 2)
@@ -483,6 +516,9 @@ namespace Debond
     certificate.n_sides = static_cast<unsigned int>(laws.size());
     try
       {
+        // The bound with fixed branches is cheap, one factorisation. Where j_1
+        // is convex it is the whole answer; otherwise its stresses and gaps
+        // still tell where to refine.
         bound_fixed_state(equilibrium, laws, fields, displacement, certificate);
         const double own = own_rounding(certificate, fields.strain_energy(u));
         certificate.upper += own;
@@ -500,12 +536,17 @@ namespace Debond
       if (!trace_constants.empty())
         certify_global(
           u, displacement, proof, interruption, earlier, certificate);
+    // A proof that has been interrupted before its first bound leaves minus
+    // infinity.
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
     add_load_rests(u, displacement, certificate);
     if (earlier != nullptr)
       intersect(certificate, *earlier);
+    // Both numbers are computed in different ways from the same data. If they
+    // contradict each other, an assumption is violated, and it is better to
+    // give none.
     if (!(certificate.lower <= certificate.upper))
       {
         std::ostringstream text;
@@ -531,6 +572,8 @@ namespace Debond
   {
     const ElasticFields<2> &fields  = scene->problem().fields();
     const ContactSpace<2>  &contact = scene->problem().unknowns().contact();
+    // The upper number is J of the displacement itself, with j_1 integrated
+    // exactly between its kinks and not by the quadrature of the scene.
     certificate.upper = equilibrium.elastic_functional(fields, displacement) +
                         exact_energy(scene->adhesion(),
                                      contact.boundary(),
@@ -543,6 +586,9 @@ namespace Debond
         is_for_least(certificate))
       certificate.upper = std::min(certificate.upper, earlier->upper);
 
+    // The loss of the rounded law and of the softer triangles is least if
+    // theta_I is chosen by what the result has on each side: the energy of its
+    // triangle and the mean of its s.
     const std::vector<double> energies = strain_energies(fields, displacement);
     std::vector<double>       side_energies;
     Eigen::VectorXd           means(certificate.n_sides);
@@ -583,6 +629,8 @@ namespace Debond
   {
     // What the equilibrium does not know of the loads: as much as at u.
     const ElasticFields<dim> &fields = scene->problem().fields();
+    // These two estimates are no proof, as the page says; they vanish where a
+    // vertex is put at each jump of a load.
     const std::vector<double> rests =
       equilibrium.load_rests(fields, displacement);
     for (unsigned int cell = 0; cell < rests.size(); ++cell)

@@ -108,6 +108,8 @@ namespace Debond
           {
             const dealii::Point<2> middle =
               0.5 * (face.vertices[0] + face.vertices[1]);
+            // The middle of a face is on a side, but for rounding, if the way
+            // from end to end over it is no longer than the side.
             const auto side =
               std::find_if(certificate.sides.begin(),
                            certificate.sides.end(),
@@ -156,6 +158,8 @@ namespace Debond
     {
       const bool is_global = certificate.minimum == CertifiedMinimum::global;
       const std::string status = to_string(certificate.proof_status);
+      // Ends of the interval are rounded outwards when they are printed, so
+      // that what the log says is true as well.
       record.heading("Certificate");
       record.add("/certificate",
                  {{"minimum", is_global ? "global" : "fixed state"},
@@ -223,6 +227,8 @@ namespace Debond
       return;
     try
       {
+        // What cannot be certified is refused here, before the solve takes its
+        // time.
         if (n_started_ranks() > 1)
           throw EquilibriumError("several ranks have no certificate; run the "
                                  "scene on one rank");
@@ -255,6 +261,9 @@ namespace Debond
                              latest_global ? &*latest_global : nullptr);
     if (certificate->minimum == CertifiedMinimum::global)
       latest_global = certificate;
+    // J of the result is by the scene's quadrature, and may lie outside of what
+    // is exact. The interval is widened to hold it, so that nobody reads two
+    // numbers that contradict each other.
     certificate->include(result.functional);
   }
 
@@ -267,6 +276,9 @@ namespace Debond
                            const bool                               is_last)
   {
     const std::string failure = no_certificate([&]() {
+      // As long as the interval with fixed branches is too wide, that for all
+      // minima would hardly be narrower. The cells are refined by the first
+      // one, which is cheap.
       if (!is_last)
         {
           certificate.reset();
@@ -280,6 +292,8 @@ namespace Debond
                 // The bound for bonds that may break need not have that.
               }
         }
+      // Once it is narrow enough, or there can be no finer mesh, the bound for
+      // all minima is made.
       const bool is_global =
         certificate && certificate->minimum == CertifiedMinimum::global;
       const bool is_wide = certificate && certificate->width() > target;
@@ -319,6 +333,7 @@ namespace Debond
   Certification<dim>::certify(const std::shared_ptr<const Scene<dim>> &scene,
                               RunResult<dim>                          &result)
   {
+    // With a target the goal has made the certificate of the last mesh already.
     if (kind != CertificateKind::none && result.is_success() && !certificate)
       {
         dealii::Timer     timer;

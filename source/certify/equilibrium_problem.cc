@@ -26,6 +26,7 @@ namespace Debond
     bool
     is_moved(const SimplexCorners<dim> &one, const SimplexCorners<dim> &other)
     {
+      // Only translations leave the matrices of an element as they are.
       const double size = (one[1] - one[0]).norm();
       for (unsigned int i = 1; i <= dim; ++i)
         if (((one[i] - one[0]) - (other[i] - other[0])).norm() >
@@ -106,7 +107,8 @@ namespace Debond
     : A(condensed.schur_complement())
     , b(condensed.load())
   {
-    // The unknowns are m - k/3 and m + k/3.
+    // The unknowns w_1 = m - k/3 and w_2 = m + k/3 become m and k by a
+    // congruence: columns first, then rows.
     const Eigen::Index n      = b.size() / 2;
     const auto         change = [n](auto first, auto second) {
       const Eigen::MatrixXd sum = first + second;
@@ -157,7 +159,9 @@ namespace Debond
       const Material                *material;
       std::shared_ptr<const Element> element;
     };
-    // The last ones that were new.
+    // Most cells of a crossed or refined mesh are translations of a few others,
+    // and an element takes dense factorisations. The last ones that were new
+    // are kept, few enough for the search to be short.
     constexpr unsigned int most_known = 64;
     std::deque<Known>      known;
     for (const auto &cell : mesh.triangulation.active_cell_iterators())
@@ -189,6 +193,8 @@ namespace Debond
   std::unique_ptr<Condensation>
   EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
   {
+    // The hybridised system: the displacements of the sides make the tractions
+    // continuous. Its matrix is a sum over cells, as in displacement methods.
     const auto             cells = mesh.triangulation.active_cell_iterators();
     const Eigen::VectorXd &loads = mesh.loads_on_sides;
     DofVector              f(static_cast<unsigned int>(loads.size()));
@@ -216,8 +222,11 @@ namespace Debond
         const auto            unknowns = mesh.unknowns_of(cell);
         const double          weight   = weights.empty() ? 1. : weights[number];
         const Eigen::MatrixXd R        = mesh.rotation(cell);
-        const Eigen::MatrixXd K        = weight * R.transpose() * element.K * R;
-        Eigen::VectorXd       force    = R.transpose() * element.F(load);
+        // In the frame of the sides at contact. A weight of 1 - theta makes the
+        // cell softer, which is what Theorem 1 asks for; the energy of the
+        // loads alone grows by its inverse.
+        const Eigen::MatrixXd K     = weight * R.transpose() * element.K * R;
+        Eigen::VectorXd       force = R.transpose() * element.F(load);
         const Eigen::VectorXd own_lifting = lifting(unknowns);
         const Eigen::VectorXd of_lifting  = K * own_lifting;
         constant += element.constant(load) / weight +
@@ -231,6 +240,8 @@ namespace Debond
           }
       }
 
+    // The moments of the contact sides are kept, corner by corner. Rigid
+    // motions of a body that only contact holds are left in S.
     std::vector<unsigned int> kept;
     for (unsigned int k = 0; k < dim; ++k)
       for (const auto &side : mesh.contact_sides)
@@ -293,6 +304,9 @@ namespace Debond
       {
         stresses.reinit(cell);
         const auto &load = mesh.loads_of_cells[cell->active_cell_index()];
+        // This J has the loads of the equilibrated stresses, with body force
+        // and temperature constant in a cell, so that it is exactly the one
+        // that the stresses bound.
         for (const unsigned int q : values.quadrature_point_indices())
           {
             const dealii::SymmetricTensor<2, dim> epsilon =
@@ -331,6 +345,8 @@ namespace Debond
   {
     if (mesh.load_rests.empty())
       return {};
+    // The work of what is not linear in a traction is at most (int r^2 a_Q(u,u)
+    // / Lambda)^{1/2}.
     const std::vector<double> energies = strain_energies(fields, u);
     std::vector<double>       result(energies.size(), 0.);
     for (const auto &rest : mesh.load_rests)
@@ -372,6 +388,9 @@ namespace Debond
     for (const auto &cell :
          fields.unknowns().dof_handler().active_cell_iterators())
       {
+        // 1/2 |C^{1/2} epsilon(u) - C^{-1/2} sigma|^2, exactly, since both
+        // stresses are linear on each part of the cell and known at its
+        // corners.
         of_u.reinit(cell);
         const unsigned int number     = cell->active_cell_index();
         Eigen::VectorXd    difference = stresses[number];
@@ -402,6 +421,9 @@ namespace Debond
                                        const Eigen::VectorXd     &kept,
                                        const std::vector<double> &weights) const
   {
+    // The same energy twice at one displacement: by the eliminated system, and
+    // by the stresses summed up cell by cell, which do not cancel. The
+    // difference measures what the factorisation has lost.
     const DofVector        unknowns = condensed.expand(kept);
     const Eigen::VectorXd &lifting  = mesh.lifting;
     double                 energy   = mesh.loads_on_sides.dot(lifting);

@@ -40,8 +40,9 @@ namespace Debond
 
   namespace
   {
-    /// What the verification has against the result, or against the first
-    /// step of a load path that it has something against; empty if nothing.
+    /// Returns what the verification has against the result, or against the
+    /// first step of a load path that it has something against; empty if
+    /// nothing.
     template <int dim>
     std::string
     verification_message(const double tolerance, const RunResult<dim> &result)
@@ -54,6 +55,8 @@ namespace Debond
           tolerance,
           result.solve.linear_iterations > 0 ||
             !result.solve.bundle_history.empty());
+      // The paper's stop tolerance is an energy that the user has chosen. If it
+      // is too large for the scene, v_k shows how much J may still fall.
       if (const std::optional<double> &descent = result.solve.relative_descent;
           descent && !(*descent <= Tolerance::descent))
         {
@@ -69,7 +72,8 @@ namespace Debond
 
 
 
-    /// Status and message of the result.
+    /// Sets status and message of the result by what solver, verification and
+    /// refinement say of it.
     template <int dim>
     void
     judge(const std::string &failure,
@@ -77,6 +81,9 @@ namespace Debond
           RunResult<dim>    &result)
     {
       SolveResult &solve = result.solve;
+      // A solver that stopped at rounding cannot tell what its point is worth,
+      // but the verification can, from forces of stresses that share nothing
+      // with the solver.
       if (solve.status == SolverStatus::stagnated && failure.empty())
         {
           solve.status = SolverStatus::success;
@@ -103,8 +110,8 @@ namespace Debond
 
 
 
-    /// Whether nodes of the contact boundary have other normals than their
-    /// sides.
+    /// Returns whether nodes of the contact boundary have other normals than
+    /// their sides.
     template <int dim>
     bool
     is_curved(const ContactBoundary<dim> &boundary)
@@ -120,7 +127,9 @@ namespace Debond
 
 
 
-    /// Bonds that reach over a gap are one as well.
+    /// Returns whether anything acts on the body. Bonds that reach over a gap
+    /// are a load as well, if they move the body by more than the rounding of
+    /// the gap.
     template <int dim>
     bool
     has_load(const Scene<dim> &scene, const double largest_displacement)
@@ -199,6 +208,9 @@ namespace Debond
     std::string not_off;
     if (result.solve.status == SolverStatus::comes_off)
       {
+        // The solver's word alone does not count: a rigid motion away from the
+        // foundation along which the loads do work is the proof that J has no
+        // minimum.
         result.coming_off =
           coming_off(scene.problem(),
                      scene.law(),
@@ -247,7 +259,9 @@ namespace Debond
 
     const bool is_loaded = has_load(scene, result.largest.displacement);
 
-    // A loop that was interrupted has the solution of the mesh before.
+    // An estimate is worth its time for a solution only. One that is not
+    // accurate enough is one, and so is that of the mesh before a loop was
+    // interrupted.
     const bool is_solution =
       result.is_success() || !shortfall.empty() ||
       (result.solve.status == SolverStatus::interrupted &&

@@ -52,6 +52,7 @@ namespace Debond
         , choice(choose_method(parameters, parameters.solver))
         , record(parameters.output.machine_details)
       {
+        // The state of an earlier run decides the mesh, so it is read first.
         if (options.restart)
           read_state_before();
         state.scene              = parameters.effective_scene;
@@ -63,6 +64,8 @@ namespace Debond
         if (state.mesh != 0 && state.mesh != mesh)
           throw BadInput({state_file() + " is of another mesh; run without "
                                          "--restart"});
+        // Displacements in the file have the order of one rank, here they get
+        // that of these ranks.
         state.mesh      = mesh;
         begun           = state.meshes;
         begun.start     = on_these_ranks(state.meshes.start);
@@ -70,8 +73,8 @@ namespace Debond
         path.progress.u = on_these_ranks(state.path.u);
         choose_linear_solver(*scene, parameters.solver, choice);
         check_supports_of_method(choice, parameters.solver, *scene);
-        // Before the solve, so that nothing is lost if it is not finite
-        // somewhere.
+        // The exact displacement is compared with zero before the solve, so
+        // that nothing is lost if it is not finite somewhere.
         error_of(parameters.verification.exact_displacement,
                  *scene,
                  DofVector(scene->problem().unknowns().n_dofs()));
@@ -91,6 +94,8 @@ namespace Debond
         list_files(*scene);
         try
           {
+            // The lock comes before anything is removed: another run may be
+            // writing to this directory.
             on_all_ranks(scene->ranks(), [&]() {
               if (is_first_rank())
                 lock.emplace(parameters.output.directory);
@@ -98,6 +103,8 @@ namespace Debond
             remove_files(files, parameters.output.directory);
             if (path.progress.steps.empty())
               path_output->remove_steps();
+            // An old state would otherwise be taken up by a later --restart
+            // that means this run.
             if (!options.restart)
               remove_files({{"restart.state", {}, {}}},
                            parameters.output.directory);
@@ -136,7 +143,9 @@ namespace Debond
           refine();
         else if (!has_path)
           minimise();
-        // Of a refined mesh the global branch and the arc are left to do.
+        // Refinement has followed the path on its last mesh as well, and only
+        // the global branch and the arc are left to do; otherwise the path
+        // begins here.
         if (has_path && result.solve.status != SolverStatus::interrupted)
           follow();
         else if (!path.progress.steps.empty())
@@ -172,6 +181,8 @@ namespace Debond
         dealii::Timer timer;
         try
           {
+            // The summary comes last and names the cost of all that was written
+            // before, so that whoever finds it knows the run to be complete.
             append(write_files(files, parameters.output.directory), written);
             result.times.emplace_back("output", timer.wall_time());
             result.times.emplace_back("total", total.wall_time());
@@ -203,6 +214,8 @@ namespace Debond
           if (is_first_rank())
             print_error(message);
         };
+        // In the order of what the user has to know first: no answer, a search
+        // that was cut short, files that are missing.
         if (!result.is_answer())
           print("NOT CONVERGED (" + result.status + "): " + result.message);
         else if (interrupted)
@@ -248,6 +261,8 @@ namespace Debond
             return;
           }
         state = read_state<dim>(state_file(), parameters.effective_scene);
+        // A path may be continued with other factors than it was begun with, as
+        // long as the steps that are done are the same.
         const LoadPathParameters &load_path = parameters.load_path;
         for (unsigned int k = 0; k < state.path.steps.size(); ++k)
           {
@@ -296,6 +311,8 @@ namespace Debond
                         log(),
                         options.terminal,
                         begun.start.size() > 0 ? &begun.start : nullptr);
+        // A signal leaves the last iterate in the state, from which --restart
+        // goes on.
         if (result.solve.u.size() > 0 &&
             (result.solve.status == SolverStatus::interrupted ||
              result.solve.minimum.interrupted))
@@ -322,6 +339,9 @@ namespace Debond
       void
       refine()
       {
+        // Each mesh is reported when it is done, and its state saved before the
+        // next one is solved, so that a run that ends there begins again with
+        // that mesh.
         AdaptiveObserver<dim> observer;
         observer.level_is_done = [this](const AdaptiveLevel &level) {
           report_level(static_cast<unsigned int>(result.levels.size()),
@@ -365,7 +385,9 @@ namespace Debond
           }
         catch (const BadInput &)
           {
-            // A load that only the finer mesh shows to have no integral.
+            // A load that only the finer mesh shows to have no integral is an
+            // error of the input. It leaves the directory as it was found, like
+            // those that are seen at once.
             if (lock)
               {
                 for (const std::string &file : written)
@@ -380,6 +402,7 @@ namespace Debond
         path                = std::move(adaptive.path);
         path.result         = result.solve;
         state.meshes.levels = result.levels;
+        // From here on a restart stays on this mesh.
         state.has_last_mesh = true;
         state.shortfall     = shortfall;
         list_files(*scene);
@@ -403,6 +426,8 @@ namespace Debond
                  const AdhesionIntegral<dim> &) {
             result.verification = verification;
             path_output->add(progress.steps.back(), progress.u, verification);
+            // A step that went wrong is not saved, so that a restart tries it
+            // again.
             if (!progress.steps.back().message.empty())
               return;
             state.path = progress;
