@@ -297,6 +297,10 @@ namespace Debond
       }
     given += balance;
 
+    // The stress is the load's particular one plus Z y. Given the displacements
+    // l of the sides it is the one of least complementary energy less the work
+    // on l: an equation with Z'MZ for y, from which stiffness K, force F and
+    // energy follow as for a displacement element.
     const Eigen::MatrixXd             Z = mapped_basis<dim>(corners);
     const Eigen::LLT<Eigen::MatrixXd> factor(Z.transpose() * M * Z);
     const Eigen::MatrixXd             b       = Z.transpose() * (M * given);

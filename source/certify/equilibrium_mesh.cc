@@ -117,6 +117,9 @@ namespace Debond
     for (const auto &cell : mesh.active_cell_iterators())
       for (unsigned int corner = 0; corner <= dim; ++corner)
         {
+          // Sides inside of the body need nothing but their unknowns. Those of
+          // the boundary get supports, the law's directions, and loads, as work
+          // on the means w_k.
           const auto face = cell->face(face_opposite<dim>(corner));
           if (!face->at_boundary())
             continue;
@@ -236,6 +239,9 @@ namespace Debond
     Eigen::MatrixXd        result = Eigen::MatrixXd::Zero(n, n);
     for (unsigned int corner = 0; corner <= dim; ++corner)
       {
+        // Cells see Cartesian unknowns in the order of their own corners; the
+        // mesh has them in the frame of the side, in the order of the vertices'
+        // numbers, which both neighbours share.
         const auto &rows  = directions(first_unknown(cell, corner));
         const auto  own   = vertices_of_side(cell, corner);
         const auto  first = unknowns_of_a_side * corner;
@@ -368,6 +374,9 @@ namespace Debond
         return given.traction(side.id, point, side.normal);
       },
       side.corners);
+    // The stresses are in equilibrium with the linear traction of the same
+    // moments. What is left of it is estimated apart, by Lambda of a rectangle
+    // as wide as the side and as high as the cell.
     if (traction.rest > 0.)
       {
         loads_are_exact = false;

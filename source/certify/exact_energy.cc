@@ -46,7 +46,8 @@ namespace Debond
                const AdhesiveLaw         &law,
                const VectorView          &s)
   {
-    // Pieces of the law are quadratics of a trace that is quadratic at most.
+    // Between kinks j_1 is a quadratic of a trace that is quadratic at most, so
+    // a polynomial of degree 4, which three Gauss points integrate exactly.
     const dealii::QGauss<1> rule(3);
     double                  energy = 0.;
     for (const auto &face : boundary.faces)

@@ -20,15 +20,15 @@ namespace Debond
 
 
 
-    /// A proof goes so far, relative to J, which is much less than what meshes
-    /// leave, and relative to the interval as it is. That of the first one is
-    /// as wide as this, relative to J.
+    /// The gap at which branch and bound ends, relative to J, which is much
+    /// less than what meshes leave, and relative to the interval as it is. The
+    /// first interval is taken for this wide, relative to J.
     constexpr double proof_tolerance      = 1e-6;
     constexpr double part_of_the_interval = 0.002;
     constexpr double first_interval       = 1e-2;
 
-    /// Nodes of each bound after the first one: what is then not
-    /// decided is left to the ranges.
+    /// The nodes of each bound after the first one: what is then not decided is
+    /// left to the ranges.
     constexpr unsigned int n_later_nodes = 400;
 
     /// Shifts at the kinks, relative to the stiffness of the bonds. Large ones
@@ -45,7 +45,7 @@ namespace Debond
     /// makes the bound higher differ from scene to scene.
     constexpr std::array<double, 3> least_shifts = {{1., 3., 0.3}};
 
-    /// Stages without such a gain that end it.
+    /// The number of stages without such a gain after which it ends.
     constexpr unsigned int n_idle_stages = 3;
 
     constexpr double least_gain = 0.05;
@@ -55,7 +55,7 @@ namespace Debond
 
 
 
-    /// The cell above a side, scaled.
+    /// The cell above a side, scaled to a side of length 1.
     TriangleAboveSide
     triangle(const ContactSide &side)
     {
@@ -160,6 +160,8 @@ namespace Debond
     double
     StagedBounds::add_bound(const std::vector<double> &D, const bool is_first)
     {
+      // Any bound of the tree is valid, so that it need not be better than what
+      // the mesh allows: the tolerance grows with the interval that is known.
       const double             interval   = std::isfinite(known.lower) ?
                                               upper - known.lower :
                                               first_interval * std::abs(upper);
@@ -181,6 +183,7 @@ namespace Debond
           -std::numeric_limits<double>::infinity() :
           problem->constant + bound.lower - problem->rounding;
       values = problem->all(bound.s);
+      // Each D gives a bound for the same number, and the best one counts.
       if (lower > known.lower)
         {
           known.lower    = lower;
@@ -207,6 +210,9 @@ namespace Debond
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
       double best_lower = -std::numeric_limits<double>::infinity();
+      // D is at most 2 a at first. If that proof does not end, larger ones are
+      // tried, which round the law less but make the triangles softer, and the
+      // better bound is taken.
       for (const double multiple : first_shifts)
         {
           if (const double lower =
@@ -247,6 +253,9 @@ namespace Debond
            stage < n_stages && !interruption.requested();
            ++stage)
         {
+          // In turn: what is known of the bound makes the ranges of p = m + k
+          // xi narrower (Theorem 2), and on narrower ranges the law loses less,
+          // which raises the bound.
           look(stage == 0);
           const double before = upper - known.lower;
           add_bound(problems.shifts_for_ranges(
@@ -261,6 +270,7 @@ namespace Debond
           if (n_idle == n_idle_stages || (stage > 0 && !losses_matter()))
             break;
         }
+      // The last bound has something to say of the ranges, too.
       if (!interruption.requested())
         look(false);
 
@@ -296,6 +306,9 @@ namespace Debond
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.mesh.contact_sides)
       {
+        // Lambda_I depends on shape, material and scale, and sides of one shape
+        // share it: each takes a few eigenvalue problems. It is taken a little
+        // lower for what rounding may have done to it.
         const TriangleAboveSide own = triangle(side);
         const Material          material =
           material_above(side, materials(side.cell->material_id()));

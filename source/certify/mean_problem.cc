@@ -64,6 +64,8 @@ namespace Debond
                  const Interval        &range,
                  const double           factor)
     {
+      // Branches outside of the range of m cannot be reached by the minima that
+      // are asked for, and without them fewer bonds are left to branch on.
       unsigned int first = whole.index(range.upper);
       unsigned int last  = std::max(whole.index(range.lower), first);
       while (first < last && range.upper <= whole[first].lower)
@@ -130,6 +132,8 @@ namespace Debond
         const PiecewiseEnergy &law     = laws[i];
         const double           largest = multiple * law[0].curvature;
         double                 D       = 0.02 * law[0].curvature;
+        // D is just so large that the result's mean is not where the envelope
+        // differs from the law: then nothing is lost there.
         while (D < largest && RoundedBranches(law, D).is_rounded_near(means(i)))
           D *= 1.25;
         shifts.push_back(std::min({D, largest, available(i)}));
@@ -150,7 +154,11 @@ namespace Debond
       {
         const PiecewiseEnergy &law = laws[i];
         const double           a   = law[0].curvature;
-        const double of_stiffness  = 0.5 * energies[i] / trace_constants[i];
+        // What D costs at the last m and k: theta = D/Lambda of the energy of
+        // the triangle, D k^2/6 |I| for the slope, and what the rounded law is
+        // below the law. A D for which the whole range is on one piece loses
+        // only the first of them.
+        const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
         double       least    = std::numeric_limits<double>::infinity();
@@ -247,6 +255,10 @@ namespace Debond
                                  const Eigen::VectorXd            &means,
                                  const std::vector<double>        &D) const
   {
+    // G_theta of Theorem 1: the triangles above the sides are 1 - theta_I times
+    // as stiff. Too much taken from them may leave a matrix that is indefinite
+    // to rounding; then there is no problem with these D, and smaller ones are
+    // tried.
     std::vector<double> weights(sharers.size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
       weights[sides[i].cell->active_cell_index()] -= D[i] / trace_constants[i];
@@ -273,6 +285,9 @@ namespace Debond
         const RoundedBranches    rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
+        // By Theorem 2 a side whose range is on one piece has a quadratic term
+        // in m and k, and its mean is eliminated if it is not in contact; by
+        // Theorem 1 the others have the rounded law of m and lose D k^2/6.
         if (result.pieces.back())
           {
             const PiecewiseEnergy::Piece &piece = law[*result.pieces.back()];
@@ -320,6 +335,8 @@ namespace Debond
       return {};
     result.phi = std::make_unique<SeparableBranches>(kept_laws);
 
+    // The reserve for rounding is measured at the result, where the bound is to
+    // be tight.
     const Eigen::VectorXd at = result.all(means(result.kept));
     result.rounding          = equilibrium.rounding_of(*condensed,
                                               MeansAndSlopes::unknowns(at),
@@ -335,6 +352,8 @@ namespace Debond
                              std::vector<double>               D) const
   {
     constexpr unsigned int trials = 12;
+    // Shifts that take too much stiffness leave a problem that is not convex in
+    // what is eliminated. Half of them is a valid choice as well.
     for (unsigned int trial = 0; trial < trials; ++trial)
       {
         if (auto problem = try_mean_problem(ranges, means, D))

@@ -12,7 +12,7 @@ namespace Debond
 {
   namespace
   {
-    /// Nodes that tell where minimisers are.
+    /// The numbers of boxes of which the union says where minimisers are.
     constexpr unsigned int n_nodes_of_ranges       = 32;
     constexpr unsigned int n_quick_nodes_of_ranges = 4;
 
@@ -130,6 +130,10 @@ namespace Debond
                 const Interruption         &interruption,
                 std::vector<CertifiedSide> &ranges)
   {
+    // In each box that is not excluded the functional grows quadratically about
+    // its relaxed minimum, so that points with J <= U are in an ellipsoid
+    // around it. More boxes give smaller ellipsoids, and their union is the
+    // range.
     const double           best = upper - problem.constant + problem.rounding;
     const NodeBound        bound(problem.S, problem.g, *problem.phi);
     std::vector<ProofNode> open;
@@ -156,6 +160,7 @@ namespace Debond
         ProofNode node = std::move(open.back());
         open.pop_back();
         NodeResult result;
+        // Once there are enough boxes the open ones are taken as they are.
         if (nodes < n_nodes)
           {
             result = bound.bound(node, best, 0.);

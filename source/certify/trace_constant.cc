@@ -102,12 +102,15 @@ namespace Debond
     conditions.tangential_displacement_fixed = tangential_fixed;
     EquilibriumProblem<2> problem(mesh, conditions, {}, unit, Loads<2>());
     const auto           &sides = problem.mesh.contact_sides;
-    // A motion along I does not change the energy.
+    // If v_tau is free, a motion along I has no energy, and one unknown is
+    // fixed to make the matrix definite.
     if (!tangential_fixed)
       problem.mesh.is_fixed[sides[0].first_unknown + 1] = 1;
     const Eigen::MatrixXd basis = not_linear_traces(sides);
 
-    // The parts of the stiffness that are tried: theta n has to be more than 1.
+    // The lemma of doc/reference/certificate.md: Lambda >= lambda_min(theta)
+    // for each theta with theta n > 1, of which a few are tried and the best
+    // one counts.
     double best = 0.;
     for (const double theta_n : {1.1, 1.5, 2.5, 5.})
       {

@@ -136,6 +136,8 @@ namespace Debond
                         std::cout,
                         {is_on_terminal, options.restart});
 
+      // To be valid a scene has to have a mesh, supports, loads and a method
+      // that go together, all of which is found out by making it.
       MethodChoice     choice = choose_method(parameters, parameters.solver);
       const Scene<dim> scene(parameters,
                              parameters.solver.start,
@@ -219,6 +221,8 @@ namespace Debond
           is_own = dynamic_cast<const ErrorElsewhere *>(&error) == nullptr;
           lines  = {std::string("internal error: ") + error.what()};
         }
+      // If all ranks have thrown, one of them prints. If only some have, the
+      // others wait for a message that never comes, so that all are ended.
       const std::optional<EndOfRanks> end =
         end_together(is_own, static_cast<int>(code));
       if (!end || end->is_speaker)
@@ -236,6 +240,9 @@ namespace Debond
                    const SceneOptions             &options,
                    SignalWatch                    &watch)
     {
+      // Each scene is on its own: an error in one is reported, and the next one
+      // is solved. Two that write to one directory would destroy each other's
+      // results.
       Directories           directories;
       std::vector<ExitCode> codes;
       for (const std::string &scene : scenes)
@@ -325,6 +332,8 @@ namespace Debond
     SignalWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
     if (n_started_ranks() > 1)
       start_mpi();
+    // The first rank alone prints; the others run the same code with a stream
+    // that takes nothing.
     if (!is_first_rank())
       std::cout.setstate(std::ios::failbit);
     const ExitCode code = guard([&]() { return execute(argc, argv, watch); });

@@ -232,6 +232,8 @@ namespace Debond
     std::string   title;
     std::getline(file, title);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    // The checksum finds files that were cut off or are of another version
+    // before Boost reads them, which would crash on some.
     if (title != title_of(bytes))
       throw BadInput({file_name + " is not the state of a run of this version "
                                   "of Debond, or it is damaged; run without "
@@ -241,6 +243,7 @@ namespace Debond
     boost::archive::binary_iarchive archive(content);
     exchange(archive, state);
 
+    // A state belongs to its scene, but for entries that may_differ() names.
     for (const auto &[name, values] : values_of({{state.scene, scene}}))
       if (!may_differ(name) && values[0] != values[1])
         throw BadInput({file_name + " is of another scene: " + name + " was " +

@@ -10,6 +10,8 @@ namespace Debond
                                const double                 length,
                                const AdhesionIntegral<dim> &integral) const
   {
+    // With nodal bonds each s_i has the law w_i f(s_i / l_i), and g is affine
+    // in the factor, as StationaryPath needs it.
     const Eigen::VectorXd             g = load(first);
     std::vector<StationaryPath::Bond> bonds_of_nodes;
     const auto                       &nodes = scene.contact_boundary().nodes;

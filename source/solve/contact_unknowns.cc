@@ -11,6 +11,8 @@ namespace Debond
   Eigen::VectorXd
   ContactUnknowns::trace(const DistributedVector &v) const
   {
+    // Each normal belongs to one rank, so that a sum over the ranks gives s to
+    // all of them.
     Eigen::VectorXd s = Eigen::VectorXd::Zero(normals.size());
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (own.is_element(normals[i]))
@@ -61,6 +63,8 @@ namespace Debond
     for (unsigned int i = 0; i < normals.size(); ++i)
       nodes[normals[i]] = i;
     using Place = std::pair<unsigned int, unsigned int>;
+    // Each rank reads its own rows, and the contact boundary is small enough
+    // for all ranks to have the whole block.
     std::vector<std::pair<Place, double>> entries;
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (own.is_element(normals[i]))

@@ -25,6 +25,9 @@ namespace Debond
     if (free.empty())
       return;
 
+    // (A + E)^{-1} by the block factors of A in double precision: A_ii is in
+    // the factor of the condensation, and what is left is S + E on the nodes
+    // that are not held.
     Eigen::MatrixXd whole = condensed.schur_complement();
     whole += E;
     const Eigen::MatrixXd matrix = whole(free, free);
@@ -48,6 +51,8 @@ namespace Debond
   DofVector
   CondensedCorrection::solve(const DofVector &r) const
   {
+    // Elimination takes the forces r to the contact normals, and expansion
+    // takes s back to all unknowns.
     const Condensation under_r = condensed.with_load(r);
     Eigen::VectorXd    s       = Eigen::VectorXd::Zero(under_r.load().size());
     if (!free.empty())

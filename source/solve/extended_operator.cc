@@ -20,6 +20,9 @@ namespace Debond
         dof_cell->get_dof_indices(cell.dofs);
 
         // Row v of edges is the edge to vertex v + 1.
+        // Differences of coordinates are taken in extended precision, since
+        // rounded gradients would spoil all that follows: a rigid motion has to
+        // have no stress.
         dealii::Tensor<2, dim, long double> edges;
         for (unsigned int v = 0; v < dim; ++v)
           for (unsigned int d = 0; d < dim; ++d)
@@ -95,6 +98,9 @@ namespace Debond
               const Gradient force = weighted * gradients[n];
               for (unsigned int d = 0; d < dim; ++d)
                 {
+                  // The first node has minus the sum of the others' forces, so
+                  // that each cell is in equilibrium. Rows of an assembled
+                  // matrix have that only to the rounding of their entries.
                   forces(cell.dofs[(n + 1) * dim + d]) += force[d];
                   forces(cell.dofs[d]) -= force[d];
                 }
@@ -139,6 +145,9 @@ namespace Debond
         gradient[d] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
                         cartesian_u(cell.dofs[d])) *
                        gradients[n];
+    // Stresses come from differences of displacements with the first node, in
+    // which what neighbours have in common is gone before it is multiplied by a
+    // modulus.
     if (cell.stiffness != nullptr)
       {
         Stress sigma;

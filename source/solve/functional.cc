@@ -20,6 +20,9 @@ namespace Debond
       , adhesion_at_x(functional.adhesion.change(s))
     {
       gradient->reinit(x, true);
+      // The line search of the paper asks for J at many t. Along a line the
+      // quadratic part is a parabola, so that two products with A serve for all
+      // of them, and only the contact boundary is evaluated anew.
       functional.multiply(*gradient, x);
       *gradient -= functional.f;
       A_d->reinit(d, true);
@@ -31,6 +34,9 @@ namespace Debond
     double
     change(const double t) const override
     {
+      // The change of J is returned instead of J, since near a minimum both
+      // values agree in most of their digits, and (14) compares the change with
+      // m_L t v_k.
       return t * (slope + 0.5 * t * curvature) +
              (functional.adhesion.change(trace(t)) - adhesion_at_x);
     }

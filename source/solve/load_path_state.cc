@@ -24,6 +24,9 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       if (!unknowns.has_prescribed_displacements())
         return 0.;
+      // The lifting of the prescribed displacements alone, without the gap,
+      // which has no factor. Vertices of the contact boundary that are held
+      // have a bond whose force belongs to this work as well.
       DofVector displacement = unknowns.lifting({0., 1.});
       displacement -= unknowns.lifting({0., 0.});
       double sum = problem.fields().residual(u, factors) * displacement;
@@ -45,7 +48,9 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &boundary = unknowns.contact().boundary();
 
-      // By cell the stiffness of bonds times the size of a face at the edge.
+      // By cell the stiffness of bonds times the size of a face where some of
+      // its nodes have a bond and others have none: there a front may be, and
+      // E*/a has to be resolved.
       std::vector<double> at_edge(
         unknowns.dof_handler().get_triangulation().n_global_active_cells());
       for (const auto &face : boundary.faces)
@@ -94,6 +99,8 @@ namespace Debond
     LoadPathState<dim> state   = {};
     double             measure = 0.;
 
+    // Columns have to be the same at all steps, so that states that the law can
+    // have are listed even if no node is in them.
     constexpr unsigned int n_known =
       static_cast<unsigned int>(BondState::held) + 1;
     state.other_parts.emplace_back(verification.name(BondState::free), 0.);
@@ -129,6 +136,8 @@ namespace Debond
         state.mean_gap -= nodes[i].measure * node.s;
         state.normal_force += node.normal_force;
       }
+    // With degree 2 a coefficient of an edge is no displacement, and the
+    // largest gap is that of the quadratic.
     const auto &boundary = problem.unknowns().contact().boundary();
     if (boundary.degree == 1)
       state.largest_gap = verification.largest_opening;

@@ -9,10 +9,11 @@ namespace Debond
 {
   namespace
   {
-    /// Between two versions of the line on a terminal.
+    /// The time between two versions of the line on a terminal.
     constexpr double seconds_between_prints = 0.2;
 
-    /// With fewer unknowns nothing takes more than some seconds.
+    /// The number of unknowns from which on setups are announced: with fewer
+    /// ones nothing takes more than some seconds.
     constexpr unsigned int fewest_announced = 50000;
 
 
@@ -114,6 +115,8 @@ namespace Debond
       *out << header << std::endl;
     header_printed = true;
 
+    // A terminal has one line that is rewritten, a log has lines at 1, 2, 5,
+    // 10, ..., so that thousands of bundle iterations remain readable.
     last_row = row;
     pending  = true;
     if (terminal)

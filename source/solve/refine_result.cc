@@ -13,7 +13,9 @@ namespace Debond
                 const Interruption &interruption,
                 SolveResult        &result)
   {
-    // What solvers in double precision fail at on very slender bodies.
+    // On very slender bodies rounding in double precision keeps a solver from
+    // its end. Where it has stopped is near enough to the minimum for extended
+    // precision to go on from there.
     const bool has_failed = result.status == SolverStatus::quadratic_program ||
                             result.status == SolverStatus::no_descent;
     if (!can_be_verified(result.status) && !has_failed)
@@ -36,7 +38,8 @@ namespace Debond
           "tolerance; the result is that of the refinement in extended "
           "precision from where it ended.");
       }
-    // The search knows other bonds than the result has.
+    // If bonds have changed their pieces by the refinement, the word that the
+    // search has given is about another state.
     const Eigen::VectorXd after =
       scene.problem().unknowns().contact().trace(result.u);
     const auto curvature = [&](const Eigen::VectorXd &s) {

@@ -99,6 +99,8 @@ namespace Debond
     conditions.names = boundaries;
     for (const std::string &name : names.interfaces)
       {
+        // Without a contact condition on both sides of a cut the two bodies
+        // would move through each other.
         const auto &sides = boundaries.at(name);
         if (!std::includes(conditions.contact.begin(),
                            conditions.contact.end(),
@@ -166,6 +168,8 @@ namespace Debond
       }
     for (const std::string &name : given.supports.rollers)
       supports.displacements.push_back({name, boundaries.at(name), true});
+    // The gap of all contact boundaries comes first, and those with an entry of
+    // their own replace it.
     if (!given.supports.gap.empty())
       for (const dealii::types::boundary_id id : conditions.contact)
         supports.gaps[id] = {
@@ -190,6 +194,8 @@ namespace Debond
                   const AdhesiveLaw        &law,
                   const BoundaryConditions &conditions)
   {
+    // A number is made a constant function: parsed expressions cost much more
+    // at each point, and most bonds differ by boundary only.
     using Field      = typename BondField<dim>::Field;
     using Bonds      = typename BondField<dim>::Bonds;
     const auto field = [&](const std::string &text) -> Field {
@@ -243,7 +249,10 @@ namespace Debond
   check_held_vertices(const ElasticUnknowns<dim> &unknowns,
                       const std::vector<double>  &load_factors)
   {
-    // Values that are zero by cancellation are as wrong as others are.
+    // A vertex whose normal displacement is prescribed is no contact node, so s
+    // <= 0 has to hold for it at all factors by the data. Values that are zero
+    // by cancellation are as wrong as others are, hence a tolerance relative to
+    // the largest of them.
     const ContactBoundary<dim> &boundary = unknowns.contact().boundary();
     double                      largest  = 0.;
     for (const auto &node : boundary.nodes)

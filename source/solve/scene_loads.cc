@@ -39,6 +39,9 @@ namespace Debond
                              load.n_components(dim));
         if (load.kind == "Force")
           {
+            // A total force is spread evenly over the faces that this mesh has,
+            // so that its resultant is the same on all meshes, also of a curved
+            // boundary.
             double measure = 0.;
             for (const auto &cell : owned_cells(mesh))
               for (const auto &face : cell->face_iterators())
