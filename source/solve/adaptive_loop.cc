@@ -77,8 +77,9 @@ namespace Debond
 
 
 
-    /// Of numbers for the cells that a rank has those of all cells, by their
-    /// places in the whole mesh.
+    /// Returns the numbers of all cells, by their places in the whole mesh,
+    /// from those that each rank has for its own. The mesh is divided by all
+    /// ranks alike.
     template <int dim>
     std::vector<double>
     of_whole_mesh(const Scene<dim> &scene, const std::vector<double> &of_cells)
@@ -297,6 +298,8 @@ namespace Debond
             interrupt();
             return false;
           }
+        // From here on the result is that of this mesh, whatever it is worth;
+        // only a signal leaves that of the mesh before in its place.
         result.solve = std::move(solution);
         result.path  = std::move(path);
         scene        = here;
@@ -319,6 +322,8 @@ namespace Debond
             const double search_gain =
               result.solve.functional_from_start.value_or(functional) -
               functional;
+            // What later meshes are compared with, and what log and summary say
+            // of this one. add() sets its error_factor.
             AdaptiveLevel level = {scene->n_cells(),
                                    unknowns.n_free_dofs(),
                                    unknowns.contact().size(),
@@ -443,6 +448,8 @@ namespace Debond
         look_at_goal(true);
         if (!result.shortfall.empty())
           return;
+        // Goal and target may both be missed, and each is named with the limit
+        // that is in its way.
         if (goal && !goal_here.is_reached)
           result.shortfall = goal_here.shortfall + ": " + limit + '.';
         if (!growth.meets_target() && accuracy.target > 0.)
@@ -511,6 +518,8 @@ namespace Debond
     std::shared_ptr<const BisectedBody<dim>> body;
     try
       {
+        // The first mesh becomes one that bisection can refine, which most
+        // tetrahedra from files cannot.
         body = std::make_shared<const BisectedBody<dim>>(
           std::dynamic_pointer_cast<const Body<dim>>(problem.body));
         for (const std::vector<unsigned int> &times : divisions)

@@ -47,6 +47,7 @@ namespace Debond
       double     first     = factor / last.factors.loads;
       const bool increases = first > 1.;
       bool       changes   = false;
+      // A node in contact stays there while the factor only scales the state.
       for (unsigned int i = 0; i < last.s.size(); ++i)
         if (last.s(i) < 0.)
           {
@@ -81,6 +82,9 @@ namespace Debond
                      const PathPoint             &last,
                      const LoadFactors            next)
     {
+      // As long as bonds stay on their first pieces, the responses of S + E
+      // with s <= 0 to all smaller loads are parts of the response to the next
+      // one, and on the way there a bond may come to the end of its piece.
       const Eigen::VectorXd zero      = Eigen::VectorXd::Zero(last.s.size());
       Eigen::MatrixXd       stiffness = scene.condensed.schur_complement();
       stiffness += bonds.curvature(zero);

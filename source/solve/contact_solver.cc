@@ -135,6 +135,8 @@ namespace Debond
                const SolverParameters      &parameters,
                Progress                    &progress) override
       {
+        // All factors share one factorisation: another load costs its two
+        // triangular solves.
         here.emplace(factors == LoadFactors(1.) ?
                        whole :
                        at_factors(whole, problem, bonds, factors));
@@ -197,6 +199,9 @@ namespace Debond
                 const AdhesionIntegral<dim> &bonds,
                 Progress                    &progress)
       {
+        // The bundle method works on deal.II's vectors, so that s is copied
+        // into one. J(s) has the form of the paper's functional, with S for A
+        // and g for f.
         const ContactSpace<dim>          normals = contact.condensed();
         const MatrixView                 S       = whole.schur_complement();
         const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
@@ -299,6 +304,9 @@ namespace Debond
           body = body->coarser();
         if (body == nullptr)
           return;
+        // The coarse mesh is a scene of its own, on which loads, supports and
+        // bonds are evaluated anew. What its search found is told with the
+        // result.
         const Scene<dim> coarse_scene(scene.parameters(), body);
         SolverParameters coarse = parameters;
         coarse.prove            = false;
@@ -336,6 +344,8 @@ namespace Debond
         // another state residuals would have nothing to be relative to.
         if (load.all_zero())
           u = 0.;
+        // J on all unknowns, where each majorant is minimised only as exactly
+        // as is of use for the next one.
         DisplacementProblem minimised(
           problem, load, bonds, *cycle, u, progress.interruption);
         const double   energy = prescribed_energy(problem, bonds, factors);

@@ -90,6 +90,8 @@ namespace Debond
                             const ActiveSet                   &held,
                             TruncatedMultigrid                &cycle) const
   {
+    // Each rank gives the cycle the entries of E in its own rows and the held
+    // normals that are its own.
     std::vector<TruncatedMultigrid::Entry> entries;
     std::vector<unsigned int>              held_unknowns;
     for (int j = 0; j < E.outerSize(); ++j)

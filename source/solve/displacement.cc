@@ -39,6 +39,8 @@ namespace Debond
                      const DofVector            &u,
                      const std::string          &file_name)
   {
+    // The order of one rank makes the file the same for any number of ranks, so
+    // that a run may start from one that had others.
     const DofVector in_order = in_serial_order(unknowns, u);
     write_atomically(file_name, [&in_order](std::ostream &out) {
       out.precision(std::numeric_limits<double>::max_digits10);

@@ -85,6 +85,9 @@ namespace Debond
   ExtendedVector
   ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
   {
+    // Forces are summed up from the stresses of Cartesian displacements, cell
+    // by cell, and the sum goes back to the unknowns of the scene: jumps,
+    // frames and coefficients.
     const ExtendedVector displacement = problem.unknowns().basis().to_nodal(u);
     ExtendedVector       forces       = ExtendedVector::Zero(u.size());
     for (const Cell &cell : cells)

@@ -90,6 +90,8 @@ namespace Debond
   double
   Functional<dim>::value(const DofVector &v) const
   {
+    // J_n of Problem M_Vn of the paper, with the bonds' energy counted from s =
+    // 0.
     DofVector A_v(v);
     multiply(A_v, v);
     return 0.5 * (A_v * v) - f * v + adhesion.change(contact.trace(v));
@@ -101,6 +103,8 @@ namespace Debond
   void
   Functional<dim>::subgradient(const DofVector &v, DofVector &eta) const
   {
+    // eta = A v - f + xi, with one xi of Clarke's subdifferential of the bonds'
+    // energy (the paper's (12)).
     multiply(eta, v);
     eta -= f;
     contact.add_normal(adhesion.subgradient(contact.trace(v)), eta);

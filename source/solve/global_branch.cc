@@ -56,9 +56,11 @@ namespace Debond
                  const double       factor,
                  BranchPoint       &point)
       {
-        const AdhesionIntegral<dim>  bonds     = scene.bonds(factor);
-        const Condensation           condensed = scene.at(factor);
-        Eigen::VectorXd              s         = neighbour.s;
+        const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
+        const Condensation          condensed = scene.at(factor);
+        // If the neighbour's minimum lives on under this load,
+        // majorise-minimise finds it within a few steps.
+        Eigen::VectorXd              s = neighbour.s;
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
                                  bonds,
@@ -162,6 +164,8 @@ namespace Debond
       {
         if (interruption.requested())
           return branch;
+        // A full search is worth its time only where the neighbour has given
+        // something new.
         auto &[factor, point] = *entry;
         if (last != nullptr && search.start_from(*last, factor, point))
           search.search(factor, point);

@@ -160,8 +160,10 @@ namespace Debond
             break;
           }
         const double before = path.t();
-        last                = path.advance(interval.first, interval.second);
-        is_going            = false;
+        // One breakpoint a pass, at which a node goes to its next segment of
+        // the law and t may turn.
+        last     = path.advance(interval.first, interval.second);
+        is_going = false;
         if (last == Event::no_stiffness)
           arc.note =
             "The arc ends where the bonds that hold the body have broken.";

@@ -128,6 +128,8 @@ namespace Debond
 
     for (unsigned int i = 0; i < nodes.size(); ++i)
       {
+        // Each node counts with the measure of the boundary that its bonds
+        // stand for.
         const ContactNodeState &node = verification.nodes[i];
         s(i)                         = node.s;
         measure += nodes[i].measure;
@@ -157,6 +159,8 @@ namespace Debond
           other /= measure;
       }
 
+    // Energies are integrals of strains and no products with A, whose rows
+    // nearly cancel.
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
     state.adhesion_energy = adhesion.value(s);
     state.unit_load_work  = problem.fields().load_work(u, factors);

@@ -265,6 +265,8 @@ namespace Debond
          in_gib(left) +
          "; try fewer Mesh/Cells or a higher Solver/Memory limit"});
 
+    // Methods and entries that exclude each other are refused now, without a
+    // mesh.
     MethodChoice choice = {solver.method, solver.linear_solver, ""};
     if (choice.method == SolverMethod::euclidean_bundle)
       choice.linear_solver = LinearSolver::none;
@@ -372,6 +374,8 @@ namespace Debond
     choice.is_condensed =
       choice.linear_solver == LinearSolver::direct ||
       (choice.linear_solver == LinearSolver::multigrid && needs_S);
+    // The paper's method stores its subgradients, the others their factor or
+    // their levels, and S with what is made of it.
     const double bytes = choice.linear_solver == LinearSolver::none ?
                            8. * solver.bundle.bundle_size * n :
                          choice.linear_solver == LinearSolver::direct ?

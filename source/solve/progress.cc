@@ -151,6 +151,8 @@ namespace Debond
   void
   Progress::finish()
   {
+    // The last iteration is the one that users look for, whether or not its
+    // turn has come.
     if (pending)
       *out << (terminal ? '\r' + padded(last_row) : last_row) << std::endl;
     pending = false;

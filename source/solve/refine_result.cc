@@ -23,6 +23,7 @@ namespace Debond
     const dealii::Timer   timer;
     const Eigen::VectorXd before =
       scene.problem().unknowns().contact().trace(result.u);
+    // This replaces u only if the refinement converges.
     const Refined refined = refine_where_needed(
       scene.problem(), scene.adhesion(), 1., solver, interruption, result.u);
     result.is_refined       = refined.is_refined;

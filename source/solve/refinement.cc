@@ -133,6 +133,8 @@ namespace Debond
             for (unsigned int i = 0; i < normals.size(); ++i)
               if (active[i] != 0)
                 u(normals[i]) = lifting(normals[i]);
+            // The preconditioner is made anew for each active set, while u
+            // stays where the last one has led it.
             solver.prepare(E, active);
             if (!solve())
               return false;

@@ -107,7 +107,9 @@ namespace Debond
   void
   Scene<dim>::add_problem(const MPI_Comm ranks, std::string &entry)
   {
-    dealii::Timer    timer;
+    dealii::Timer timer;
+    // Names of boundaries, regions and parts are known by the body; here they
+    // become ids on the mesh that these ranks share.
     const PieceNames names = [&]() {
       const Stage          stage("mesh");
       DistributedMesh<dim> mesh = make_distributed_mesh(*elastic_body, ranks);
@@ -119,7 +121,11 @@ namespace Debond
     seconds_for_mesh                = timer.wall_time();
 
     const Stage stage("assembly");
-    entry               = "Boundary conditions/Clamped boundaries";
+    entry = "Boundary conditions/Clamped boundaries";
+    // Supports decide the unknowns, and these the pattern of A; loads and
+    // materials only its entries. The entry is the one that an error of the
+    // next step most likely belongs to, such as a free rigid motion to the
+    // clamped boundaries.
     boundary_conditions = make_conditions(given, names);
     body_supports       = make_supports<dim>(given, boundary_conditions);
     elastic_problem     = std::make_unique<ElasticProblem<dim>>(*triangulation,
@@ -157,6 +163,8 @@ namespace Debond
                              "for double precision; what is 1e6 times as stiff "
                              "as the rest is as good as rigid"));
     elastic_problem->assemble(body_materials, body_loads, body_dead_loads);
+    // Means over all pieces with a name are reported for every scene, probes
+    // where it asks for them.
     piece_means  = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
@@ -221,6 +229,8 @@ namespace Debond
   void
   Scene<dim>::add_contact()
   {
+    // The law as pieces, the quadrature of int j_1(v_nu) over Gamma_C, and
+    // where bonds vary their scales at its points together make Phi(s).
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);
@@ -243,6 +253,8 @@ namespace Debond
                             DofVector(elastic_problem->unknowns().n_dofs()),
                             0.);
       }
+    // The functional of the paper on all unknowns, for its bundle method;
+    // condensed methods make theirs of S and g.
     energy = std::make_unique<Functional<dim>>(
       [this](DofVector &dst, const DofVector &src) {
         elastic_problem->vmult(dst, src);

@@ -35,6 +35,7 @@ namespace Debond
                            const Function                           &function)
     {
       const std::set<std::string> &in_contact = given.contact_boundaries;
+      // A face may have one value only, while pieces with names may overlap.
       std::map<dealii::types::boundary_id, std::string> taken;
       for (const auto &[name, entry] : entries)
         for (const dealii::types::boundary_id id : conditions.names.at(name))
@@ -92,6 +93,7 @@ namespace Debond
   {
     const BoundaryNames &boundaries = names.boundaries;
     BoundaryConditions   conditions;
+    // Names become sets of ids, since one face may belong to several pieces.
     for (const std::string &name : given.clamped_boundaries)
       insert(boundaries.at(name), conditions.clamped);
     for (const std::string &name : given.contact_boundaries)
@@ -122,6 +124,7 @@ namespace Debond
       entries_of("Contact law/Tangential displacement", own),
       conditions,
       [&](const std::string &name, const dealii::types::boundary_id id) {
+        // Only boundaries that differ from the rest of Gamma_C are exceptions.
         if ((own.at(name) == "fixed") !=
             conditions.tangential_displacement_fixed)
           conditions.tangential_exceptions.insert(id);
@@ -160,6 +163,8 @@ namespace Debond
     const BoundaryNames                 &boundaries = conditions.names;
     const std::map<std::string, double> &constants  = given.loads.constants;
     Supports<dim>                        supports;
+    // Clamps are conditions on boundaries; all other supports are values of
+    // components, or of the normal one for rollers.
     for (const auto &[name, text] : given.supports.displacements)
       {
         supports.displacements.push_back(

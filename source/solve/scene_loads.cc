@@ -16,6 +16,8 @@ namespace Debond
              const BoundaryNames              &boundaries,
              const dealii::Triangulation<dim> &mesh)
   {
+    // Dead loads and those that grow with the factor are assembled apart, f =
+    // f_0 + t f_1, and each entry belongs to one of them.
     const auto is_wanted = [&](const std::string &name) {
       return wants_dead == (dead_loads.count(name) > 0);
     };
@@ -28,6 +30,8 @@ namespace Debond
         make_function<dim>(parameters.temperature_change,
                            parameters.constants,
                            1);
+    // Several loads may act on one face; all of them are kept with their
+    // entries, which errors and notes name.
     for (const SurfaceLoad &load : parameters.on_boundaries())
       {
         if (!is_wanted(load.boundary))

@@ -29,6 +29,8 @@ namespace Debond
     result.status    = minimum.status;
     result.message   = minimum.message;
     result.criterion = minimum.residual;
+    // Iterations are numbered through, as a result may have been minimised more
+    // than once.
     for (MajoriseMinimiseIteration iteration : minimum.history)
       {
         iteration.iteration = ++result.iterations;
@@ -44,6 +46,8 @@ namespace Debond
   functional_of(const Scene<dim> &scene, const DofVector &u)
   {
     const ElasticProblem<dim> &problem = scene.problem();
+    // From the strains, in the sum over cells, which keeps the digits that a
+    // product with A loses.
     return problem.fields().elastic_functional(u) +
            scene.adhesion().value(scene.contact_trace(u));
   }
