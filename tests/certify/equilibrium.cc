@@ -270,7 +270,7 @@ namespace
         check(is_pulled ? "a solid that is pulled" : "a solid with weight",
               std::abs(minimum(*stresses.condense()) / exact - 1.),
               1e-9);
-        check("its loads are exact", stresses.loads_are_exact());
+        check("its loads are exact", stresses.mesh.loads_are_exact);
       }
 
     BoundaryConditions conditions;
@@ -291,11 +291,11 @@ namespace
                                  });
     check("a clamped solid: below the P1 displacement",
           minimum(*stresses.condense()) < minimum(condensed));
-    check("and linear tractions are exact", stresses.loads_are_exact());
+    check("and linear tractions are exact", stresses.mesh.loads_are_exact);
     loads.tractions[*names.at("top").begin()] = {{function<3>("x*z; 0; 0")}};
     check("others are not",
           !EquilibriumProblem<3>(mesh, conditions, {}, material, loads)
-             .loads_are_exact());
+             .mesh.loads_are_exact);
   }
 
 
@@ -429,7 +429,7 @@ namespace
         std::cout << "a change of temperature " << expression << " is exact: "
                   << (EquilibriumProblem<2>(
                         bar.mesh, bar.conditions, {}, bar.material, bar.loads)
-                          .loads_are_exact() ?
+                          .mesh.loads_are_exact ?
                         "yes" :
                         "no")
                   << std::endl;
@@ -451,7 +451,7 @@ namespace
                                           supports,
                                           bar.material,
                                           bar.loads)
-                        .loads_are_exact() ?
+                        .mesh.loads_are_exact ?
                       "yes" :
                       "no")
                 << std::endl;
