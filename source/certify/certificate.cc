@@ -527,7 +527,8 @@ namespace Debond
       }
     catch (const FixedStateError &)
       {
-        // Such as of a body that only bonds hold.
+        // Bodies that only bonds hold, for instance, have no such bound. There
+        // may be one for all minima all the same.
         if (trace_constants.empty())
           throw;
         certificate.gaps.clear();
@@ -599,6 +600,9 @@ namespace Debond
         means(i) =
           std::min(Trace<2>(side, fields.unknowns(), displacement).mean(), 0.);
       }
+    // Theorem 1 as a finite problem in the means and slopes, from which branch
+    // and bound and the ranges of Theorem 2 raise the lower number stage by
+    // stage.
     const MeanProblems problems(equilibrium,
                                 trace_constants,
                                 laws,
@@ -627,10 +631,10 @@ namespace Debond
                                  const DofVector &displacement,
                                  Certificate     &certificate) const
   {
-    // What the equilibrium does not know of the loads: as much as at u.
+    // The stresses may be in equilibrium with other loads than the given ones;
+    // the difference is taken for as large as at u. These two estimates are no
+    // proof, and vanish with a vertex where a load jumps.
     const ElasticFields<dim> &fields = scene->problem().fields();
-    // These two estimates are no proof, as the page says; they vanish where a
-    // vertex is put at each jump of a load.
     const std::vector<double> rests =
       equilibrium.load_rests(fields, displacement);
     for (unsigned int cell = 0; cell < rests.size(); ++cell)

@@ -63,6 +63,7 @@ namespace Debond
     std::vector<CellField>
     fields_of_cells(const Scene<dim> &scene, const Certificate &certificate)
     {
+      // Where the bound for fixed branches has failed there are no stresses.
       if (certificate.gaps.empty())
         return {};
       std::vector<CellField>               fields;
@@ -184,6 +185,8 @@ namespace Debond
       record.line("certified to",
                   scientific_above(certificate.width(), 1),
                   " of |J|");
+      // Lengths of a state in all minima are what the user can rely on,
+      // whichever of the minima is the global one.
       for (const CertifiedLength &length : certificate.lengths)
         {
           record.add("/certificate/lengths/" + length.state,

@@ -164,6 +164,7 @@ namespace Debond
     Eigen::MatrixXd
     mapped_basis(const SimplexCorners<dim> &corners)
     {
+      // The null space is found once for the reference simplex.
       static const Eigen::MatrixXd reference = [] {
         SimplexCorners<dim> unit;
         for (unsigned int d = 0; d < dim; ++d)
@@ -199,10 +200,12 @@ namespace Debond
     Eigen::Matrix<double, n_of_part<dim>, n_of_part<dim>>
     compliance_matrix(const double measure, const Material &material)
     {
-      constexpr int               n       = n_stress_components<dim>;
-      const double                mu      = material.shear_modulus();
-      const double                lambda  = material.lame_lambda<dim>();
-      const double                coupled = lambda / (dim * lambda + 2. * mu);
+      constexpr int n       = n_stress_components<dim>;
+      const double  mu      = material.shear_modulus();
+      const double  lambda  = material.lame_lambda<dim>();
+      const double  coupled = lambda / (dim * lambda + 2. * mu);
+      // 2 mu C^{-1} at a point, in which shear stresses count twice. The
+      // integrals of products of barycentric coordinates come with it below.
       Eigen::Matrix<double, n, n> pointwise;
       pointwise.setIdentity();
       pointwise.template topLeftCorner<dim, dim>().array() -= coupled;

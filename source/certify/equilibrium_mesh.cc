@@ -178,6 +178,8 @@ namespace Debond
               loads_are_exact &=
                 (force - mean).norm() <= Tolerance::linear_data * largest;
           }
+        // A temperature that varies in a cell is taken as its mean, which makes
+        // the loads inexact.
         if (given.temperature_change)
           {
             std::vector<double> values;
@@ -247,7 +249,7 @@ namespace Debond
         const auto  first = unknowns_of_a_side * corner;
         for (unsigned int k = 0; k < dim; ++k)
           {
-            // Its place in the order of numbers.
+            // The place of the corner in the order of the vertices' numbers.
             const auto place = std::count_if(own.begin(),
                                              own.end(),
                                              [&](const unsigned int vertex) {
@@ -291,6 +293,8 @@ namespace Debond
                                   const dealii::Function<dim> &function,
                                   const unsigned int           component)
   {
+    // The lifting has the means w_k of the prescribed function, which is exact
+    // if that is linear on the side.
     std::array<double, dim> values;
     double                  largest = 0., sum = 0.;
     for (unsigned int k = 0; k < dim; ++k)
@@ -369,6 +373,8 @@ namespace Debond
   void
   EquilibriumMesh<dim>::set_traction(const Side &side, const Loads<dim> &given)
   {
+    // Tractions have to be linear on a side for the stresses to balance them,
+    // so each is replaced by the linear one with the same moments.
     const SideTraction<dim> traction = side_traction<dim>(
       [&](const dealii::Point<dim> &point) {
         return given.traction(side.id, point, side.normal);

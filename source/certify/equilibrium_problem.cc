@@ -421,9 +421,9 @@ namespace Debond
                                        const Eigen::VectorXd     &kept,
                                        const std::vector<double> &weights) const
   {
-    // The same energy twice at one displacement: by the eliminated system, and
-    // by the stresses summed up cell by cell, which do not cancel. The
-    // difference measures what the factorisation has lost.
+    // One energy is computed twice at one displacement: by the eliminated
+    // system, and by the stresses, summed up cell by cell. The difference
+    // measures what the factorisation has lost.
     const DofVector        unknowns = condensed.expand(kept);
     const Eigen::VectorXd &lifting  = mesh.lifting;
     double                 energy   = mesh.loads_on_sides.dot(lifting);

@@ -59,6 +59,7 @@ namespace Debond
           adhesion.points().bonds_at(dealii::Point<2>(0.5 * (face.vertices[0] +
                                                              face.vertices[1])),
                                      face.id);
+        // The law of this face has its kinks stretched by the bonds' scale.
         std::vector<double> kinks = law.kinks();
         for (double &kink : kinks)
           kink *= bonds.stretch;

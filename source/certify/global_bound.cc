@@ -59,6 +59,8 @@ namespace Debond
     TriangleAboveSide
     triangle(const ContactSide &side)
     {
+      // Similar triangles have the same constant but for their size, so height
+      // and place of the apex in terms of the side are all that matters.
       dealii::Tensor<1, 2> to_apex;
       for (const unsigned int v : side.cell->vertex_indices())
         if (side.cell->vertex_index(v) != side.vertices[0] &&
@@ -88,6 +90,8 @@ namespace Debond
       const bool is_below = along[0] * to_centre[1] < along[1] * to_centre[0];
       // The apex is nearer to the second corner if the centre is.
       const bool is_turned = to_centre * along > 0.5 * side.measure;
+      // An orthotropic material turns with the triangle, and is mirrored where
+      // the triangle is.
       result.axis_angle -=
         std::atan2(along[1], along[0]) * 180. / dealii::numbers::PI;
       if (is_below != is_turned)

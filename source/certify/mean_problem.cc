@@ -116,6 +116,8 @@ namespace Debond
     , n(static_cast<unsigned int>(sides.size()))
     , sharers(equilibrium.mesh.triangulation.n_active_cells(), 0)
   {
+    // Sides of one triangle share its stiffness, since the sum of their theta
+    // has to be less than 1.
     for (const EquilibriumMesh<2>::Side &side : sides)
       ++sharers[side.cell->active_cell_index()];
   }
@@ -198,6 +200,9 @@ namespace Debond
     for (unsigned int i = 0; i < n; ++i)
       {
         const double D = problem.shifts[i];
+        // The parts by which the bound at these m and k misses J: 1/2 theta
+        // a_Q(u,u), and where the piece is not certain the rounded law and the
+        // slope.
         result.push_back(0.5 * D / trace_constants[i] * energies[i]);
         if (problem.pieces[i])
           continue;
@@ -227,7 +232,8 @@ namespace Debond
       std::vector<unsigned int> others = result.eliminated;
       for (unsigned int i = 0; i < n; ++i)
         others.push_back(n + i);
-      // That there is an inverse proves that it is convex in the others.
+      // The existence of the inverse is the proof that the problem is convex in
+      // the others.
       auto inverse = safe_inverse(A(others, others));
       if (!inverse)
         return false;
@@ -240,7 +246,7 @@ namespace Debond
       const Eigen::MatrixXd S =
         A(result.kept, result.kept) + mixed.transpose() * result.to_others;
       result.S = 0.5 * (S + S.transpose());
-      // What shifts take may be more than what the bonds of stiff laws leave.
+      // Shifts may take more than the bonds of stiff laws leave.
       if (!is_safely_positive_definite(result.S))
         return false;
       result.g = b(result.kept) + result.to_others.transpose() * b_others;

@@ -45,7 +45,7 @@ namespace Debond
   {
     static const SideRule<dim> rule = make_rule<dim>(parts_of_a_face<dim>);
 
-    // At the corners the linear function with the same moments.
+    // The values at the corners of the linear function with the same moments.
     std::array<dealii::Tensor<1, dim>, dim> linear;
     std::vector<dealii::Tensor<1, dim>>     values;
     double                                  largest = 0., square = 0.;
@@ -69,6 +69,7 @@ namespace Debond
           rest -= barycentric[k] * linear[k];
         square += weight * rest.norm_square();
       }
+    // What rounding leaves of a linear traction is no rest.
     if (std::sqrt(square) <= Tolerance::linear_data * largest)
       square = 0.;
     return {linear, square};

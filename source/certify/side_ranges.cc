@@ -56,6 +56,9 @@ namespace Debond
         {
           if (ball.value > upper)
             return {};
+          // By value + 1/2 (s - x)'A (s - x) <= U each linear functional l's is
+          // within (2 (U - value) l'A^{-1} l)^{1/2} of l'x; the variance below
+          // is l'A^{-1} l.
           const double radius =
             std::sqrt(2. * (upper - ball.value)) * (1. + Tolerance::outwards);
           const Eigen::VectorXd x         = problem.all(ball.x);
@@ -69,7 +72,7 @@ namespace Debond
                 of_slope(i) + of_slopes.row(i).dot(slopes.row(i));
               const double covariance =
                 mixed(i) + of_means.row(i).dot(slopes.row(i));
-              // Of the mean + xi times the slope.
+              // The range of the mean + xi times the slope.
               const auto range_at = [&](const double xi) -> Interval {
                 const double variance = mean_variance + 2. * xi * covariance +
                                         xi * xi * slope_variance;
@@ -141,7 +144,7 @@ namespace Debond
       {
         if (!cut(*root, problem, ranges))
           return;
-        // With as few relaxations as later nodes.
+        // The root then has as few relaxations as later nodes.
         if (is_quick)
           root->number = 1;
         open.push_back(std::move(*root));

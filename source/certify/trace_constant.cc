@@ -58,7 +58,9 @@ namespace Debond
     not_linear_traces(const std::vector<EquilibriumMesh<2>::Side> &I)
     {
       const Eigen::Index n = static_cast<Eigen::Index>(I.size());
-      Eigen::VectorXd    mass =
+      // With means and slopes the L2 product on I is diagonal, 1/n for a mean
+      // and 1/(3 n) for a slope.
+      Eigen::VectorXd mass =
         Eigen::VectorXd::Constant(2 * n, 1. / static_cast<double>(n));
       mass.tail(n) /= 3.;
       Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);

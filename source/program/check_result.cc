@@ -234,7 +234,8 @@ namespace Debond
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
-    // What bonds have left for good only the path knows.
+    // Only the path knows which pieces bonds have left for good, and it has
+    // verified its states itself.
     if (result.path.empty())
       result.verification = verify(scene.problem(),
                                    scene.adhesion(),

@@ -178,6 +178,7 @@ namespace Debond
       watch.begin_run(!table.has_machine_details());
       const Parameters parameters = table.parameters(scene);
 
+      // Two names may mean one directory.
       const auto [other, is_new] = directories.emplace(
         std::filesystem::weakly_canonical(parameters.output.directory), scene);
       if (!is_new && !options.validate)
@@ -258,6 +259,8 @@ namespace Debond
               }));
         }
 
+      // The exit code of several scenes is that of the first that is no
+      // success; the table says which.
       ExitCode first_failure = ExitCode::success;
       if (scenes.size() > 1)
         std::cout << "\nexit code  scene\n";

@@ -236,6 +236,8 @@ namespace Debond
       void
       list_files(const Scene<dim> &on_mesh)
       {
+        // The files depend on the mesh, whose scene may be replaced by a finer
+        // one; so the list is made anew for each.
         files = output_files(parameters.output, on_mesh, result);
         path_output.emplace(parameters.output,
                             on_mesh.problem(),
@@ -286,7 +288,8 @@ namespace Debond
                  from_serial_order(scene->problem().unknowns(), u);
       }
 
-      /// For --restart. A run whose state cannot be written goes on.
+      /// Writes the state for --restart. A run whose state cannot be written
+      /// goes on.
       void
       save_state()
       {
@@ -323,7 +326,7 @@ namespace Debond
           }
       }
 
-      /// For the iterations; null if there is none.
+      /// The stream for the iterations; null if there is none.
       std::ostream *
       log() const
       {

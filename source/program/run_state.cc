@@ -69,7 +69,7 @@ namespace Debond
 
 
 
-    /// To or from the file, by the type of the archive.
+    /// Writes to the file or reads from it, by the type of the archive.
     template <class Archive, int dim>
     void
     exchange(Archive &archive, LoadPathState<dim> &state)

@@ -395,7 +395,7 @@ namespace Debond
           return true;
         if (goal == nullptr)
           return growth.meets_target();
-        // Its look may have been cut short.
+        // A signal may have cut the goal's look short.
         if (interruption.requested())
           {
             interrupt();
@@ -406,8 +406,8 @@ namespace Debond
                (growth.meets_target() || accuracy.target == 0.);
       }
 
-      /// Its divisions are added to those of progress. @p limit becomes why
-      /// there can be none.
+      /// Returns the body of the next mesh, and adds its divisions to those of
+      /// progress. If there can be none, @p limit says why.
       std::shared_ptr<const BisectedBody<dim>>
       next_body(std::string &limit)
       {
@@ -482,7 +482,7 @@ namespace Debond
       const AdaptiveObserver<dim>       &observer;
       std::shared_ptr<const Scene<dim>> &scene;
 
-      // Of all meshes.
+      // These are the same on all meshes.
       const ProblemParameters problem;
       const MPI_Comm          ranks;
       const MethodChoice      wanted; ///< the linear solver may be automatic

@@ -71,10 +71,10 @@ namespace Debond
 
 
 
-    /// From rest, where all nodes are about to leave contact or to press on it,
-    /// the state grows in proportion to the load until bonds change. One
-    /// problem with s <= 0 and the initial stiffness of the bonds decides which
-    /// nodes leave.
+    /// The first change on the way from rest, where all nodes are about to
+    /// leave contact or to press on it. The state grows in proportion to the
+    /// load until bonds change, and one problem with s <= 0 and the initial
+    /// stiffness of the bonds decides which nodes leave.
     template <int dim>
     std::optional<double>
     change_from_rest(const CondensedScene<dim>   &scene,
@@ -185,8 +185,8 @@ namespace Debond
       !has_slope && last.s.isZero(0.) && scene.load(last.factors).isZero(0.);
     if (!bonds.points().is_nodal())
       {
-        // What is prescribed on the contact boundary changes the springs'
-        // forces.
+        // Displacements that are prescribed on the contact boundary change the
+        // springs' forces with the factor, so that the change is not known.
         if (!unknowns.contact().boundary().held_vertices.empty())
           return {};
         if (is_at_rest)

@@ -22,8 +22,8 @@ namespace Debond
     constexpr unsigned int maximum_linear_iterations = 2000;
     constexpr unsigned int maximum_line_steps        = 500;
 
-    /// What linear systems may leave of their residual while the contact set
-    /// changes.
+    /// The part of their residual that linear systems may leave while the
+    /// contact set changes.
     constexpr double linear_reduction = 0.1;
   } // namespace
 

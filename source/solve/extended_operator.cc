@@ -45,7 +45,7 @@ namespace Debond
   void
   ExtendedOperator<dim>::make_reference_gradients()
   {
-    // Of a barycentric coordinate by the others than the first.
+    // The gradient of a barycentric coordinate by all but the first.
     const auto derivative = [](const unsigned int v) {
       Gradient result;
       for (unsigned int d = 0; d < dim; ++d)

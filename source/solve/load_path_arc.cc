@@ -19,7 +19,7 @@ namespace Debond
         , values(is_of_loads ? path.factors : path.displacement_factors)
       {}
 
-      /// Whether there is no line.
+      /// Returns whether there is no line.
       bool
       is_constant() const
       {
@@ -43,7 +43,7 @@ namespace Debond
                              });
       }
 
-      /// The least and the largest one times @p sign.
+      /// Returns the least and the largest one times @p sign.
       std::pair<double, double>
       interval(const double sign) const
       {

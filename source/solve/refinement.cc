@@ -87,7 +87,7 @@ namespace Debond
         // and mostly the last one.
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);
-        // Of what w leaves of a lifting that it undoes.
+        // The energy that rounding of w leaves of a lifting that w undoes.
         constexpr long double epsilon  = std::numeric_limits<double>::epsilon();
         const DofVector       diagonal = problem.diagonal();
         for (unsigned int i = 0; i < lifting.size(); ++i)

@@ -33,8 +33,8 @@ namespace Debond
 
 
 
-    /// Of the bonds at the nodes, or on coarser spaces their means; empty if
-    /// all are the same.
+    /// The stretches of the bonds at the nodes, or on coarser spaces their
+    /// means; empty if all are the same.
     template <int dim>
     std::vector<double>
     stretches(
@@ -187,7 +187,7 @@ namespace Debond
 
       WorkLimit work;
 
-      /// For starts on many nodes, else empty.
+      /// The guess for starts on many nodes, else empty.
       ActiveSetGuess guess;
 
       SearchProblem
@@ -257,7 +257,7 @@ namespace Debond
         const GuidedSearchResult guided = guided_search(
           problem(), adhesion.points().is_nodal(), proof_limits(), s);
         add_search(guided.search);
-        // What a limit of work has cut may not have come to any bound.
+        // A proof that a limit of work has cut may not have come to any bound.
         if (guided.proof && std::isfinite(guided.proof->lower))
           add_proof(*guided.proof);
       }
