@@ -53,6 +53,8 @@ namespace Debond
     , internal(start)
     , active(contact.size())
   {
+    // What is at s = 0 to begin with counts as active until the first sweep
+    // over the contact nodes.
     const Eigen::VectorXd s = contact.trace(u);
     for (unsigned int i = 0; i < active.size(); ++i)
       active[i] = s(i) == 0.;

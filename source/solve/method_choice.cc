@@ -312,9 +312,8 @@ namespace Debond
     const bool                  has_levels = scene.body().has_coarse_levels();
     const bool needs_S      = needs_condensed(scene, solver, choice.method);
     double     direct_bytes = 0.;
-    // A is known by now, and symbolic factorisation gives the exact number of
-    // entries and operations of its factor. It takes a small part of the
-    // factorisation's time.
+    // A is known by now, and its symbolic factorisation gives the numbers of
+    // entries and operations of the factor, in a small part of the time.
     if (choice.linear_solver == LinearSolver::automatic ||
         choice.linear_solver == LinearSolver::direct)
       {

@@ -156,6 +156,8 @@ namespace Debond
             for (unsigned int i = 0; i < r.size(); ++i)
               if (held[i] == 0)
                 residual = std::max(residual, std::abs(r(i)));
+            // All wrong nodes are exchanged at once, and one by one if that
+            // goes on for too long, which ends after finitely many steps.
             if (rule.update(excess,
                             mu,
                             0.01 * std::numeric_limits<double>::epsilon() *
@@ -308,7 +310,7 @@ namespace Debond
               all == 0. ? 0. : static_cast<double>(std::sqrt(rho / all));
             if (rho <= target)
               return true;
-            // A correction that gains less than two digits has come to what
+            // A correction that gains less than a digit has come to what
             // extended precision can resolve. That is accepted if it is nearly
             // good enough.
             if (!(rho < 0.01 * error))

@@ -229,6 +229,9 @@ namespace Debond
                                const dealii::types::boundary_id id) {
                              boundaries[id] = bonds[name];
                            });
+    // The scales are relative to the law's own stiffness and threshold; of laws
+    // other than the paper's the traction factor takes the place of the
+    // stiffness.
     return std::make_unique<BondField<dim>>(
       given.law.name == "winkler" ? law.curvature(0.) : 1.,
       law.bond_threshold(),
