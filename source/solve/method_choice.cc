@@ -2,26 +2,23 @@
 #include <debond/base/memory.h>
 #include <debond/input/bad_input.h>
 #include <debond/linear_algebra/cholmod_factor.h>
-#include <debond/mesh/owned_cells.h>
 #include <debond/solve/method_choice.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <set>
+#include <limits>
 #include <sstream>
 
 namespace Debond
 {
   namespace
   {
-    /// The time below which the choice hardly matters. With a factorisation the
-    /// search is on all contact nodes, so that is preferred.
-    constexpr double seconds_that_matter = 1.;
-
-    /// The factor by which multigrid has to be faster: the estimates are no
-    /// better than that.
-    constexpr double factor_that_matters = 1.3;
+    /// The operations that a factorisation of a body in 3D may take: less is a
+    /// second, below which the choice hardly matters, and with a factorisation
+    /// the search is on all contact nodes. Aggregates take about ten times as
+    /// long as the coarser meshes of the body.
+    constexpr double largest_factorisation = 2e10, of_aggregates = 10.;
 
 
 
@@ -38,69 +35,28 @@ namespace Debond
     /// The memory of mesh and matrix for each unknown, as measured.
     constexpr double bytes_of_mesh_and_matrix = 600.;
 
-    /// The time of a solve with @p n unknowns and @p n_c contact nodes: of a
-    /// node, of an operation with dense fronts, of S, which is factorised a few
-    /// times, and of the search, as measured for doc/notes/speed.md.
+    /// The factor by which multigrid takes more cycles of these materials than
+    /// of one with nu = 1/3: it has no grip on fields without divergence if
+    /// they are nearly incompressible, nor on inclusions that differ from what
+    /// is around them.
     double
-    seconds_with_factorisation(const unsigned int      dim,
-                               const FactorisationCost cost,
-                               const double            n,
-                               const double            n_c)
+    more_cycles(const MaterialParameters &materials)
     {
-      return (dim == 2 ? 2.5e-6 : 6e-6) * n +
-             1.4e-11 * (cost.operations + 3. * std::pow(n_c, 3)) +
-             5e-7 * n_c * n_c;
-    }
-
-
-
-    /// The factor by which nearly incompressible materials multiply the cycles,
-    /// relative to nu = 1/3. The smoother does not see fields without
-    /// divergence. In plane stress there is no such field.
-    double
-    more_cycles(const ProblemParameters &problem)
-    {
-      const Material &everywhere = problem.materials.everywhere;
-      if (problem.dimension == 2 &&
-          everywhere.hypothesis == Material::Hypothesis::plane_stress)
-        return 1.;
-      // Orthotropic ones are not near to incompressible.
-      const auto poisson_ratio = [](const Material &material) {
-        return material.orthotropy ? 0. : material.poisson_ratio;
+      double     softest  = std::numeric_limits<double>::max();
+      double     stiffest = 0.; // as a bulk modulus
+      const auto add      = [&](const Material &material) {
+        const auto moduli = material.extreme_moduli();
+        softest           = std::min(softest, moduli[0]);
+        stiffest =
+          std::max(stiffest,
+                   material.orthotropy ?
+                          moduli[1] :
+                          moduli[1] / (3. * (1. - 2. * material.poisson_ratio)));
       };
-      double largest = poisson_ratio(everywhere);
-      for (const auto &[region, material] : problem.materials.of_regions())
-        largest = std::max(largest, poisson_ratio(material));
-      return std::pow(std::min(1., 3. * (1. - 2. * largest)), -0.4);
-    }
-
-
-
-    /// The time of a solve of @p n unknowns by multigrid, within a factor of
-    /// about 3 on the bodies measured.
-    double
-    seconds_with_multigrid(const ProblemParameters &problem,
-                           const bool               has_levels,
-                           const double             n)
-    {
-      const auto   lengths = problem.body->extents();
-      const double slenderness =
-        *std::max_element(lengths.begin(),
-                          lengths.begin() + problem.dimension) /
-        *std::min_element(lengths.begin(), lengths.begin() + problem.dimension);
-      if (has_levels)
-        return (problem.dimension == 2 ? 0.03 + 2.2e-6 * n :
-                                         0.05 + 4.6e-6 * n) *
-               more_cycles(problem) * std::max(1., slenderness / 50.);
-      if (problem.dimension == 2)
-        return 5e-6 * n;
-
-      // The cycle has no grip on the bending of thin bodies unless their
-      // contact side is held.
-      const double bending = problem.tangential_displacement_fixed ?
-                               1. :
-                               std::max(1., slenderness / 1.5);
-      return 3e-5 * n * bending;
+      add(materials.everywhere);
+      for (const auto &[region, material] : materials.of_regions())
+        add(material);
+      return std::pow(std::max(1., stiffest / softest), 0.4);
     }
 
 
@@ -122,61 +78,6 @@ namespace Debond
              (!path.factors.empty() &&
               path.global_branch == GlobalBranch::prove) ||
              !scene.problem().unknowns().held_by_contact().motions.empty();
-    }
-
-
-
-    /// How many times as many cycles materials take that differ inside the
-    /// cells of coarser levels, or in neighbouring cells, where levels are of
-    /// aggregates: with inclusions of a few cells 4 to 15 for a modulus that is
-    /// a hundred times as large, 10 to 30 for ten thousand times.
-    template <int dim>
-    double
-    more_cycles_by_contrast(const Scene<dim> &scene)
-    {
-      const ElasticFields<dim>       &fields = scene.problem().fields();
-      std::vector<double>             ratios;
-      std::vector<dealii::Point<dim>> centres; // of two cells for each ratio
-      // Each face inside the body between two materials, seen from the stiffer
-      // side, is a candidate.
-      for (const auto &cell : owned_cells(fields.unknowns().dof_handler()))
-        for (const unsigned int f : cell->face_indices())
-          if (!cell->at_boundary(f))
-            {
-              const auto   neighbor = cell->neighbor(f);
-              const double ratio =
-                fields.material(cell).extreme_moduli()[1] /
-                fields.material(neighbor).extreme_moduli()[1];
-              if (ratio > 1.)
-                {
-                  ratios.push_back(ratio);
-                  centres.push_back(cell->center());
-                  centres.push_back(neighbor->center());
-                }
-            }
-
-      double contrast = 1.;
-      if (!ratios.empty() && !scene.body().has_coarse_levels())
-        contrast = *std::max_element(ratios.begin(), ratios.end());
-      std::unique_ptr<const Body<dim>> coarser;
-      // A contrast hurts only where one coarse cell covers both materials, for
-      // its displacements are then too stiff for the soft one. Two centres are
-      // in one coarse cell if interpolation to them uses the vertices of one
-      // simplex.
-      for (const Body<dim> *body = &scene.body(); body != nullptr;
-           coarser = body->coarser_level(), body = coarser.get())
-        if (const auto levels = body->coarse_levels(centres); !levels.empty())
-          {
-            const Interpolation &corners = levels[0].to_finer;
-            const auto           first   = corners.nodes.begin();
-            for (std::size_t k = 0; k < ratios.size(); ++k)
-              if (std::set<unsigned int>(first + corners.starts[2 * k],
-                                         first + corners.starts[2 * k + 2])
-                    .size() <= dim + 1)
-                contrast = std::max(contrast, ratios[k]);
-          }
-      return std::pow(dealii::Utilities::MPI::max(contrast, scene.ranks()),
-                      0.4);
     }
 
 
@@ -327,42 +228,30 @@ namespace Debond
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;
         if (choice.linear_solver == LinearSolver::automatic)
           {
-            const double direct_seconds =
-              seconds_with_factorisation(dim, cost, n, n_c);
-            // Multigrid pays its cycles for each right-hand side: for each
-            // column of S if that is needed, and for each step of a path.
-            // Contrasts take a walk over all cells to find, and only matter
-            // where a factorisation is slow.
-            const double multigrid_seconds =
-              seconds_with_multigrid(problem, has_levels, n) *
-              (direct_seconds > seconds_that_matter ?
-                 more_cycles_by_contrast(scene) :
-                 1.) *
-              (needs_S ? n_c : 1.) *
-              static_cast<double>(
-                std::max<std::size_t>(1, problem.load_path.factors.size()));
-            std::string reason;
+            const std::size_t n_steps =
+              std::max<std::size_t>(1, problem.load_path.factors.size());
+            std::string why_multigrid;
             // CHOLMOD counts in 31 bits, so that a factor beyond some size is
-            // refused by it whatever the memory.
+            // refused by it whatever the memory. Multigrid pays its cycles for
+            // each step of a path, and for each column of S if that is needed,
+            // which are too many.
             if (direct_bytes > left || 8. * cost.entries > 1e12)
-              reason = "a factorisation would take about " +
-                       in_gib(direct_bytes) + " more, there are " +
-                       in_gib(left);
-            else if (direct_seconds > seconds_that_matter &&
-                     direct_seconds > factor_that_matters * multigrid_seconds)
-              reason = "it takes less time";
-            choice.linear_solver =
-              reason.empty() ? LinearSolver::direct : LinearSolver::multigrid;
-            if (!reason.empty())
-              choice.reason += (choice.reason.empty() ? "" : "; ") +
-                               ("by multigrid, since " + reason);
-            if (std::max(direct_seconds, needs_S ? 0. : multigrid_seconds) >
-                seconds_that_matter)
-              choice.reason +=
-                (choice.reason.empty() ? "" : "; ") +
-                ("estimated are " + rounded(direct_seconds) +
-                 " s with a factorisation, " + rounded(multigrid_seconds) +
-                 " s with multigrid");
+              why_multigrid = "a factorisation would take about " +
+                              in_gib(direct_bytes) + " more, there are " +
+                              in_gib(left);
+            else if (dim == 3 && !needs_S &&
+                     cost.operations > largest_factorisation *
+                                         (has_levels ? 1. : of_aggregates) *
+                                         more_cycles(problem.materials) *
+                                         static_cast<double>(n_steps))
+              why_multigrid = "it takes less time";
+            choice.linear_solver = LinearSolver::direct;
+            if (!why_multigrid.empty())
+              {
+                choice.linear_solver = LinearSolver::multigrid;
+                choice.reason += (choice.reason.empty() ? "" : "; ") +
+                                 ("by multigrid, since " + why_multigrid);
+              }
           }
       }
 
