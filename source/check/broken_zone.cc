@@ -2,6 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_sums.h>
+#include <debond/mesh/simplex_parts.h>
 
 #include <algorithm>
 #include <array>
@@ -41,40 +42,30 @@ namespace Debond
     double
     positive_part_on_pieces(const Function &function)
     {
-      constexpr unsigned int n = dim == 2 ? 1024 : 32;
-      // A piece with its corner here, its legs along the axes or against them.
-      const auto part_of_piece =
-        [&](const unsigned int x, const unsigned int y, const double leg) {
-          std::array<double, dim> values, coordinates;
-          for (unsigned int k = 0; k < dim; ++k)
-            {
-              coordinates[dim - 1] = (y + (k == 2 ? leg : 0.)) / n;
-              coordinates[1]       = (x + (k == 1 ? leg : 0.)) / n;
-              coordinates[0]       = 1.;
-              for (unsigned int d = 1; d < dim; ++d)
-                coordinates[0] -= coordinates[d];
-              values[k] = function(coordinates);
-            }
-          return positive_part(values);
-        };
-      double sum = 0.;
-      for (unsigned int x = 0; x < n; ++x)
-        for (unsigned int y = 0; y < (dim == 2 ? 1 : n - x); ++y)
+      constexpr unsigned int n   = dim == 2 ? 1024 : 32;
+      double                 sum = 0.;
+      for_each_part<dim - 1>(n, [&](const auto &corners) {
+        std::array<double, dim> values;
+        for (unsigned int k = 0; k < dim; ++k)
           {
-            sum += part_of_piece(x, y, 1.);
-            if (dim == 3 && x + y + 1 < n)
-              sum += part_of_piece(x + 1, y + 1, -1.);
+            std::array<double, dim> coordinates = {{1.}};
+            for (unsigned int d = 1; d < dim; ++d)
+              {
+                coordinates[d] = corners[k][d - 1];
+                coordinates[0] -= coordinates[d];
+              }
+            values[k] = function(coordinates);
           }
+        sum += positive_part(values);
+      });
       return sum / (dim == 2 ? n : n * n);
     }
-  } // namespace
 
 
 
-  namespace
-  {
-    /// Next to a vertex, where bonds of this face begin or end: those of the
-    /// vertex itself are those of its other faces as well.
+    /// The barycentric coordinates of a point next to a vertex, where bonds of
+    /// this face begin or end: those of the vertex itself are those of its
+    /// other faces as well.
     template <int dim>
     std::array<double, dim>
     just_inside(const unsigned int vertex)

@@ -10,13 +10,14 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace Debond
 {
   namespace
   {
-    /// With derivatives by differences. Throws std::invalid_argument where it
-    /// is not finite.
+    /// A displacement with derivatives by differences. Throws
+    /// std::invalid_argument where it is not finite.
     template <int dim>
     class ExactDisplacement : public dealii::AutoDerivativeFunction<dim>
     {
@@ -46,24 +47,6 @@ namespace Debond
     private:
       const dealii::Function<dim> &exact;
     };
-
-
-
-    /// The integrals of squares that the norms are roots of.
-    struct Squares
-    {
-      double value    = 0.;
-      double gradient = 0.;
-      double energy   = 0.;
-    };
-
-
-
-    double
-    relative_norm(const double error, const double exact)
-    {
-      return std::sqrt(exact > 0. ? error / exact : error);
-    }
   } // namespace
 
 
@@ -83,16 +66,17 @@ namespace Debond
     const auto       &values = cell_stresses.values();
 
     ExactDisplacement<dim> known(exact);
-    Squares                errors, norms;
-    const auto             add = [&](const double                  weight,
+    // Integrals of the squares that the norms are roots of.
+    std::vector<double> errors(3), norms(3);
+    const auto          add = [&](const double                  weight,
                          const dealii::Tensor<1, dim> &value,
                          const dealii::Tensor<2, dim> &gradient,
-                         Squares                      &squares) {
+                         std::vector<double>          &squares) {
       const dealii::SymmetricTensor<2, dim> strain =
         dealii::symmetrize(gradient);
-      squares.value += weight * value.norm_square();
-      squares.gradient += weight * gradient.norm_square();
-      squares.energy += weight * (strain * (stiffness * strain));
+      squares[0] += weight * value.norm_square();
+      squares[1] += weight * gradient.norm_square();
+      squares[2] += weight * (strain * (stiffness * strain));
     };
 
     const MPI_Comm ranks = problem.unknowns().communicator();
@@ -123,15 +107,12 @@ namespace Debond
             }
         }
     });
-    for (Squares *const squares : {&errors, &norms})
-      for (double *const sum :
-           {&squares->value, &squares->gradient, &squares->energy})
-        *sum = dealii::Utilities::MPI::sum(*sum, ranks);
-
-    return {relative_norm(errors.value, norms.value),
-            relative_norm(errors.gradient, norms.gradient),
-            relative_norm(errors.energy, norms.energy),
-            0.5 * norms.energy};
+    dealii::Utilities::MPI::sum(errors, ranks, errors);
+    dealii::Utilities::MPI::sum(norms, ranks, norms);
+    const auto norm = [&](const unsigned int k) {
+      return std::sqrt(norms[k] > 0. ? errors[k] / norms[k] : errors[k]);
+    };
+    return {norm(0), norm(1), norm(2), 0.5 * norms[2]};
   }
 
 

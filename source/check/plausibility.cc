@@ -88,7 +88,7 @@ namespace Debond
 
   namespace
   {
-    /// With fewer faces in it a zone that softens moves in jumps from node to
+    /// A zone that softens with fewer faces in it moves in jumps from node to
     /// node.
     constexpr double least_faces_in_zone = 3.;
 

@@ -10,6 +10,7 @@
 #include <debond/elasticity/simplex_values.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
+#include <debond/mesh/simplex_parts.h>
 
 #include <algorithm>
 #include <array>
@@ -70,32 +71,19 @@ namespace Debond
   dealii::Quadrature<dim - 1>
   face_rule(const unsigned int n_parts)
   {
-    if constexpr (dim == 2)
-      return dealii::QIterated<1>(dealii::QGauss<1>(4), n_parts);
-    else
-      {
-        const dealii::QGaussSimplex<2> rule(3);
-        std::vector<dealii::Point<2>>  points;
-        std::vector<double>            weights;
-        // A part with its corner here, its legs along the axes or against them.
-        const auto add =
-          [&](const unsigned int x, const unsigned int y, const double leg) {
-            for (unsigned int q = 0; q < rule.size(); ++q)
-              {
-                points.emplace_back((x + leg * rule.point(q)[0]) / n_parts,
-                                    (y + leg * rule.point(q)[1]) / n_parts);
-                weights.push_back(rule.weight(q) / (n_parts * n_parts));
-              }
-          };
-        for (unsigned int x = 0; x < n_parts; ++x)
-          for (unsigned int y = 0; x + y < n_parts; ++y)
-            {
-              add(x, y, 1.);
-              if (x + y + 1 < n_parts)
-                add(x + 1, y + 1, -1.);
-            }
-        return {points, weights};
-      }
+    const dealii::QGaussSimplex<dim - 1> rule(dim == 2 ? 4 : 3);
+    std::vector<dealii::Point<dim - 1>>  points;
+    std::vector<double>                  weights;
+    for_each_part<dim - 1>(n_parts, [&](const auto &corners) {
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        {
+          points.push_back(corners[0]);
+          for (unsigned int d = 0; d + 1 < dim; ++d)
+            points.back() += rule.point(q)[d] * (corners[d + 1] - corners[0]);
+          weights.push_back(rule.weight(q) / std::pow(n_parts, dim - 1));
+        }
+    });
+    return {points, weights};
   }
 
 
@@ -170,6 +158,45 @@ namespace Debond
 
 
 
+    /// The point with the coordinates that all corners of its face share
+    /// without rounding, for tractions may jump there.
+    template <int dim>
+    dealii::Point<dim>
+    on_face(dealii::Point<dim>                         point,
+            const std::array<dealii::Point<dim>, dim> &corners)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (std::all_of(corners.begin(),
+                        corners.end(),
+                        [&](const dealii::Point<dim> &corner) {
+                          return corner[d] == corners[0][d];
+                        }))
+          point[d] = corners[0][d];
+      return point;
+    }
+
+
+
+    /// The integral of the shape function @p i with these weighted values at
+    /// the points, rounded once: a constant traction has the forces of its
+    /// closed form.
+    template <int dim>
+    double
+    integral(const dealii::FEFaceValues<dim>           &fe_values,
+             const unsigned int                         i,
+             const std::vector<dealii::Tensor<1, dim>> &values)
+    {
+      const unsigned int d =
+        fe_values.get_fe().system_to_component_index(i).first;
+      long double sum = 0.;
+      for (unsigned int q = 0; q < values.size(); ++q)
+        sum +=
+          static_cast<long double>(fe_values.shape_value(i, q)) * values[q][d];
+      return static_cast<double>(sum);
+    }
+
+
+
     template <int dim>
     void
     add_tractions(const dealii::DoFHandler<dim> &dof_handler,
@@ -215,35 +242,17 @@ namespace Debond
                 double                 mean_size = 0.;
                 for (unsigned int q = 0; q < rule.size(); ++q)
                   {
-                    // A coordinate that all corners share has no rounding, for
-                    // the traction may jump there.
-                    dealii::Point<dim> point = fe_values.quadrature_point(q);
-                    for (unsigned int d = 0; d < dim; ++d)
-                      if (std::all_of(corners.begin(),
-                                      corners.end(),
-                                      [&](const dealii::Point<dim> &corner) {
-                                        return corner[d] == corners[0][d];
-                                      }))
-                        point[d] = corners[0][d];
                     values[q] =
-                      (dim - 1.) * rule.weight(q) * traction(point, normal);
+                      (dim - 1.) * rule.weight(q) *
+                      traction(on_face<dim>(fe_values.quadrature_point(q),
+                                            corners),
+                               normal);
                     by_rule += values[q];
                     mean_size += values[q].norm();
                   }
                 for (unsigned int i = 0; i < dofs.size(); ++i)
                   if (fe.has_support_on_face(i, f))
-                    {
-                      const unsigned int d =
-                        fe.system_to_component_index(i).first;
-                      // Rounded once: a constant traction has the forces of
-                      // its closed form.
-                      long double sum = 0.;
-                      for (unsigned int q = 0; q < rule.size(); ++q)
-                        sum += static_cast<long double>(
-                                 fe_values.shape_value(i, q)) *
-                               values[q][d];
-                      forces(dofs[i]) += measure * static_cast<double>(sum);
-                    }
+                    forces(dofs[i]) += measure * integral(fe_values, i, values);
                 if (notes == nullptr)
                   continue;
                 WorstFace<dim> &worst = worst_faces[traction.entry];

@@ -30,7 +30,7 @@ namespace Debond
 
 
 
-  /// How many faces of the contact boundary there are at least in the length
+  /// The least number of faces of the contact boundary in the length
   /// E' G / strength^2, over which bonds soften (Hillerborg, Modeer, Petersson,
   /// Cement Concr. Res. 6, 1976); infinite if they do not. E' = E, or E / (1 -
   /// nu^2) in plane strain and 3D, of the cell at the face, G what breaks

@@ -22,13 +22,14 @@ namespace Debond
   template <int dim>
   struct Traction
   {
-    /// With dim components, or with one: a pressure p, whose traction is -p n.
+    /// A field with dim components, or with one: a pressure p, whose traction
+    /// is -p n.
     std::shared_ptr<const dealii::Function<dim>> value;
 
     std::string entry = "Loads/Traction"; ///< of the scene
 
-    /// On a face with this outward unit normal. Throws EntryError with the
-    /// place if it is not finite there.
+    /// The traction on a face with this outward unit normal. Throws EntryError
+    /// with the place if it is not finite there.
     dealii::Tensor<1, dim>
     operator()(const dealii::Point<dim>     &point,
                const dealii::Tensor<1, dim> &normal) const;
@@ -36,18 +37,18 @@ namespace Debond
 
 
 
-  /// f_0 and f_2, in global coordinates.
+  /// The loads f_0 and f_2 in global coordinates.
   template <int dim>
   struct Loads
   {
-    /// Force per volume (per area of the plane in 2D), with dim components; may
-    /// be null.
+    /// The force per volume (per area of the plane in 2D), with dim components;
+    /// may be null.
     std::shared_ptr<const dealii::Function<dim>> body_force;
 
-    /// They add up.
+    /// By boundary ids; tractions on one boundary add up.
     std::map<dealii::types::boundary_id, std::vector<Traction<dim>>> tractions;
 
-    /// From the state without stresses; one component, may be null.
+    /// The change from the state without stresses; one component, may be null.
     std::shared_ptr<const dealii::Function<dim>> temperature_change = {};
 
     /// The sum of the tractions on a boundary, zero if there are none.
