@@ -1,33 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/mesh/cell_search.h>
 #include <debond/mesh/owned_cells.h>
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 namespace Debond
 {
   namespace
   {
-    /// In the vertices' order in the mesh.
-    template <int dim>
-    std::vector<dealii::Tensor<1, dim>>
-    vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u)
-    {
-      const dealii::DoFHandler<dim> &dofs = problem.unknowns().dof_handler();
-      const DofVector                displacement =
-        problem.unknowns().cartesian_displacement(u);
-      std::vector<dealii::Tensor<1, dim>> at_vertices(
-        dofs.get_triangulation().n_vertices());
-      for (const auto &cell : dofs.active_cell_iterators())
-        for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            at_vertices[cell->vertex_index(v)][d] =
-              displacement[cell->vertex_dof_index(v, d)];
-      return at_vertices;
-    }
-
-
-
     /// The unknowns of Cartesian components, of which each rank has its own
     /// ones, without what would enter the foundation: between nodes a gap is
     /// not what a coarser mesh sees.
@@ -85,27 +68,26 @@ namespace Debond
     std::vector<bool>       is_done(result.size(), false);
     for (const auto &cell : owned_cells(unknowns.dof_handler()))
       {
-        const double *const vertices =
+        const double *values =
           of_cells.data() +
           n_of_cell * ancestors[cell->id().get_coarse_cell_id()];
-        const double *const    values = vertices + dim * (dim + 1);
-        dealii::Point<dim>     origin;
-        dealii::Tensor<2, dim> edges; // as columns
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            origin[d] = vertices[d];
-            for (unsigned int v = 0; v < dim; ++v)
-              edges[d][v] = vertices[(v + 1) * dim + d] - vertices[d];
-          }
-        const dealii::Tensor<2, dim> to_unit = dealii::invert(edges);
+        std::array<dealii::Point<dim>, dim + 1> vertices;
+        for (dealii::Point<dim> &vertex : vertices)
+          for (unsigned int d = 0; d < dim; ++d)
+            vertex[d] = *values++;
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < n; ++i)
           {
             if (is_done[cell_dofs[i]] || !own.is_element(cell_dofs[i]))
               continue;
             is_done[cell_dofs[i]] = true;
-            const dealii::Point<dim> point(
-              to_unit * (positions[cell_dofs[i] / dim] - origin));
+            const auto coordinates =
+              barycentric_coordinates<dim>(vertices,
+                                           positions[cell_dofs[i] / dim]);
+            dealii::Point<dim> point;
+            std::copy(coordinates.begin() + 1,
+                      coordinates.end(),
+                      point.begin_raw());
             for (unsigned int j = i % dim; j < n; j += dim)
               result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }
@@ -117,25 +99,26 @@ namespace Debond
 
   template <int dim>
   DofVector
-  interpolate_displacement(const Body<dim>           &body,
-                           const ElasticProblem<dim> &source,
+  interpolate_displacement(const ElasticProblem<dim> &source,
                            const DofVector           &u,
                            const ElasticProblem<dim> &target)
   {
+    const dealii::DoFHandler<dim> &dofs = source.unknowns().dof_handler();
+    const DofVector displacement = source.unknowns().cartesian_displacement(u);
+    const CellSearch<dim>                 search(dofs.get_triangulation());
     const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
     const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
-    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
-    std::vector<dealii::Point<dim>> nodes;
-    for (const auto i : own)
+    DofVector                             result(unknowns.n_dofs());
+    for (const auto i : unknowns.dof_handler().locally_owned_dofs())
       if (i % dim == 0)
-        nodes.push_back(positions[i / dim]);
-    const std::vector<dealii::Tensor<1, dim>> values =
-      body.interpolate(source.unknowns().dof_handler().get_triangulation(),
-                       vertex_displacements(source, u),
-                       nodes);
-    DofVector result(unknowns.n_dofs());
-    for (const auto i : own)
-      result(i) = values[own.index_within_set(i) / dim][i % dim];
+        {
+          const auto found = search(positions[i / dim]);
+          const auto cell  = found.cell_of(dofs);
+          for (unsigned int v = 0; v <= dim; ++v)
+            for (unsigned int d = 0; d < dim; ++d)
+              result(i + d) += found.coordinates[v] *
+                               displacement(cell->vertex_dof_index(v, d));
+        }
     return admissible(unknowns, result);
   }
 

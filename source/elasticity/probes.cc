@@ -5,59 +5,36 @@
 #include <debond/base/ranks.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/probes.h>
+#include <debond/mesh/cell_search.h>
 #include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace Debond
 {
   namespace
   {
-    /// By the first degree of freedom of a node, in the order of the unknowns,
-    /// which is the same for any number of ranks.
+    /// Weights by the first degree of freedom of a node, in the order of the
+    /// unknowns, which is the same for any number of ranks.
     using Weights = std::map<dealii::types::global_dof_index, double>;
 
 
 
-    /// The values of the basis at a point, in the cell in which that lies
-    /// deepest.
+    /// The values of the basis at a point.
     template <int dim>
     Weights
     weights_at(const ElasticUnknowns<dim> &unknowns, const Probe<dim> &probe)
     {
-      const auto        &fe = unknowns.dof_handler().get_fe();
-      SimplexValues<dim> values(fe.base_element(0),
-                                dealii::QGaussSimplex<dim>(1));
-      double             least = -std::numeric_limits<double>::max();
-      typename dealii::DoFHandler<dim>::active_cell_iterator inside;
-      dealii::Point<dim>                                     unit_point;
-      for (const auto &cell : owned_cells(unknowns.dof_handler()))
-        {
-          values.reinit(*cell);
-          dealii::Point<dim> point;
-          double             here = 1., sum = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              point[d] = values.barycentric_gradient(d + 1) *
-                         (probe.point - cell->vertex(0));
-              here = std::min(here, point[d]);
-              sum += point[d];
-            }
-          here = std::min(here, 1. - sum);
-          if (here > least)
-            {
-              least      = here;
-              inside     = cell;
-              unit_point = point;
-            }
-        }
-      // The first of the ranks that have found it deepest has the point.
-      const MPI_Comm     ranks   = unknowns.communicator();
-      const unsigned int rank    = rank_of_this(ranks);
-      const double       deepest = dealii::Utilities::MPI::max(least, ranks);
-      const unsigned int first   = dealii::Utilities::MPI::min(
-        least == deepest ? rank : number_of_ranks(ranks), ranks);
+      const auto &dof_handler = unknowns.dof_handler();
+      const auto &fe          = dof_handler.get_fe();
+      const auto  found =
+        CellSearch<dim>(dof_handler.get_triangulation())(probe.point);
+      // The first of the ranks in which it lies deepest has the point.
+      const MPI_Comm     ranks = unknowns.communicator();
+      const unsigned int rank  = rank_of_this(ranks);
+      const double deepest = dealii::Utilities::MPI::max(found.depth, ranks);
+      const unsigned int first = dealii::Utilities::MPI::min(
+        found.depth == deepest ? rank : number_of_ranks(ranks), ranks);
       if (deepest < -Tolerance::point_in_body)
         throw EntryError("Probes/" + probe.name,
                          "the point is not in the body");
@@ -66,9 +43,9 @@ namespace Debond
       if (rank == first)
         {
           std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-          inside->get_dof_indices(dofs);
+          found.cell_of(dof_handler)->get_dof_indices(dofs);
           for (unsigned int i = 0; i < dofs.size(); i += dim)
-            weights[dofs[i]] += fe.shape_value(i, unit_point);
+            weights[dofs[i]] += fe.shape_value(i, found.unit_point());
         }
       return number_of_ranks(ranks) == 1 ?
                weights :
@@ -77,7 +54,7 @@ namespace Debond
 
 
 
-    /// Those of all ranks together.
+    /// The weights of all ranks together.
     Weights
     sum(const Weights &own, const MPI_Comm ranks)
     {

@@ -14,9 +14,9 @@ namespace Debond
 {
   namespace
   {
-    /// Of a node whose unknowns are not Cartesian, or not free: x = to_unknowns
-    /// u and u = to_cartesian x, where rows and columns of unknowns that are
-    /// not free are zero.
+    /// The frame of a node whose unknowns are not Cartesian, or not free: x =
+    /// to_unknowns u and u = to_cartesian x, where rows and columns of unknowns
+    /// that are not free are zero.
     template <int dim>
     struct NodeFrame
     {
@@ -25,7 +25,7 @@ namespace Debond
         dealii::unit_symmetric_tensor<dim>();
     };
 
-    /// By the numbers of the nodes.
+    /// The frames by the numbers of the nodes.
     template <int dim>
     using NodeFrames = std::map<unsigned int, NodeFrame<dim>>;
 

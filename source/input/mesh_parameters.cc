@@ -5,8 +5,6 @@
 #include <debond/base/tolerances.h>
 #include <debond/input/expression.h>
 #include <debond/input/mesh_parameters.h>
-#include <debond/mesh/body.h>
-#include <debond/mesh/box.h>
 #include <debond/mesh/field_value.h>
 
 #include <algorithm>
@@ -63,17 +61,6 @@ namespace Debond
                          std::to_string(dimension) +
                          comma_hint(table.get(path)),
                        {"Dimension"});
-    }
-
-
-
-    /// Where a scene finds a file: relative to its own folder.
-    std::string
-    beside(const std::string &scene, const std::string &file)
-    {
-      return (std::filesystem::path(scene).parent_path() / file)
-        .lexically_normal()
-        .string();
     }
   } // namespace
 
@@ -153,71 +140,6 @@ namespace Debond
 
 
 
-  std::shared_ptr<BodyDescription>
-  make_body(const std::string &scene,
-            const unsigned int dimension,
-            BodyParameters     body,
-            ParameterTable    &table)
-  {
-    using Source = BodyParameters::Source;
-    if (body.source == Source::box)
-      check_box(dimension, table);
-
-    std::string entry = "Mesh/Source"; // that errors belong to
-    if (body.source == Source::file)
-      {
-        entry = "Mesh/File";
-        if (body.file.empty())
-          {
-            table.reject(entry, "Source = file needs one", {"Mesh/Source"});
-            return nullptr;
-          }
-        body.file = beside(scene, body.file);
-        // The effective scene lies in another folder.
-        table.derive(entry,
-                     std::filesystem::absolute(body.file).string(),
-                     entry);
-      }
-    else if (body.source == Source::generator)
-      {
-        entry = "Mesh/Generator";
-        if (body.generator.empty())
-          {
-            table.reject(entry,
-                         "Source = generator needs one",
-                         {"Mesh/Source"});
-            return nullptr;
-          }
-      }
-
-    const auto belong_to = [&](const Source       source,
-                               const std::string &name,
-                               const std::string &entries) {
-      if (body.source != source)
-        table.without_effect(entries,
-                             "this belongs to Source = " + name,
-                             "Mesh/Source");
-    };
-    belong_to(Source::file, "file", "Mesh/File, Mesh/Scale, Mesh/Size");
-    belong_to(Source::generator, "generator", "Mesh/Generator, Mesh/Arguments");
-    if (body.source == Source::box)
-      table.without_effect("Mesh/Refinements",
-                           "a box has its Cells",
-                           "Mesh/Source");
-
-    try
-      {
-        return make_body(dimension, body);
-      }
-    catch (const std::invalid_argument &error)
-      {
-        table.reject(entry, error.what(), {"Mesh/Source"});
-        return nullptr;
-      }
-  }
-
-
-
   namespace
   {
     /// Throws EntryError where the condition has no value.
@@ -286,36 +208,16 @@ namespace Debond
         condition = make_condition<dim>("Mesh/Cuts",
                                         text.substr(ampersands + 2),
                                         constants);
-      const auto   extents  = body.extents();
-      const double rounding = Tolerance::same_coordinate *
-                              *std::max_element(extents.begin(), extents.end());
       cut.contains = [=, normal = cut.normal](const auto &face) {
         for (unsigned int v = 0; v < dim; ++v)
-          if (std::abs(face->vertex(v) * normal - place) > rounding)
+          if (std::abs(face->vertex(v) * normal - place) >
+              Tolerance::same_coordinate *
+                (face->diameter() + face->vertex(v).norm()))
             return false;
         return !condition || condition(dealii::Point<dim>(transpose(rotation) *
                                                           face->center()));
       };
       return cut;
-    }
-
-
-
-    template <int dim>
-    void
-    make_cuts(BodyDescription                     &description,
-              const BodyParameters                &parameters,
-              const std::map<std::string, double> &constants)
-    {
-      auto &body = dynamic_cast<Body<dim> &>(description);
-      for (const std::string &text :
-           dealii::Utilities::split_string_list(parameters.cuts, ','))
-        {
-          Cut<dim> cut =
-            make_cut(body, text, parameters.box.rotation, constants);
-          cut.name = "cut_" + std::to_string(body.cuts.size() + 1);
-          body.cuts.push_back(cut);
-        }
     }
 
 
@@ -361,51 +263,51 @@ namespace Debond
 
 
 
+    /// The body with its cuts and parts; its own errors belong to the @p entry.
     template <int dim>
-    void
-    make_parts(BodyDescription                          &description,
-               const std::map<std::string, std::string> &texts,
-               const std::map<std::string, double>      &constants,
-               ParameterTable                           &table)
+    std::shared_ptr<BodyDescription>
+    make_body_with_pieces(const BodyParameters                     &parameters,
+                          const std::map<std::string, std::string> &parts,
+                          const std::map<std::string, double>      &constants,
+                          const std::string                        &entry,
+                          ParameterTable                           &table)
     {
-      auto                  &body = dynamic_cast<Body<dim> &>(description);
-      std::vector<Part<dim>> parts;
-      for (const auto &[name, text] : texts)
+      const auto attempt = [&table](const std::string              &at,
+                                    const std::vector<std::string> &others,
+                                    const auto                     &action) {
         try
           {
-            parts.push_back(make_part(body, name, text, constants));
+            action();
           }
         catch (const std::invalid_argument &error)
           {
-            table.reject("Parts/" + name,
-                         error.what(),
-                         {"Dimension", "Loads/Constants"});
+            table.reject(at, error.what(), others);
           }
-      body.parts = parts;
+      };
+      std::shared_ptr<Body<dim>> body;
+      attempt(entry, {"Mesh/Source"}, [&]() {
+        body = make_body<dim>(parameters);
+      });
+      if (!body)
+        return nullptr;
+      attempt("Mesh/Cuts", {"Dimension"}, [&]() {
+        for (const std::string &text :
+             dealii::Utilities::split_string_list(parameters.cuts, ','))
+          {
+            body->cuts.push_back(
+              make_cut(*body, text, parameters.box.rotation, constants));
+            body->cuts.back().name = "cut_" + std::to_string(body->cuts.size());
+          }
+      });
+      std::vector<Part<dim>> made;
+      for (const auto &part : parts)
+        attempt("Parts/" + part.first, {"Dimension", "Loads/Constants"}, [&]() {
+          made.push_back(make_part(*body, part.first, part.second, constants));
+        });
+      body->parts = made;
+      return body;
     }
   } // namespace
-
-
-
-  void
-  add_cuts(BodyDescription                     &body,
-           const BodyParameters                &parameters,
-           const unsigned int                   dimension,
-           const std::map<std::string, double> &constants,
-           ParameterTable                      &table)
-  {
-    try
-      {
-        if (dimension == 2)
-          make_cuts<2>(body, parameters, constants);
-        else
-          make_cuts<3>(body, parameters, constants);
-      }
-    catch (const std::invalid_argument &error)
-      {
-        table.reject("Mesh/Cuts", error.what(), {"Dimension"});
-      }
-  }
 
 
 
@@ -422,16 +324,52 @@ namespace Debond
 
 
 
-  void
-  add_parts(BodyDescription                          &body,
-            const std::map<std::string, std::string> &parts,
+  std::shared_ptr<BodyDescription>
+  make_body(const std::string                        &scene,
             const unsigned int                        dimension,
+            BodyParameters                            parameters,
+            const std::map<std::string, std::string> &parts,
             const std::map<std::string, double>      &constants,
             ParameterTable                           &table)
   {
-    if (dimension == 2)
-      make_parts<2>(body, parts, constants, table);
-    else
-      make_parts<3>(body, parts, constants, table);
+    using Source             = BodyParameters::Source;
+    const Source      source = parameters.source;
+    const std::string entry  = source == Source::file      ? "Mesh/File" :
+                               source == Source::generator ? "Mesh/Generator" :
+                                                             "Mesh/Source";
+    if (source == Source::box)
+      check_box(dimension, table);
+    else if (table.get(entry).empty())
+      {
+        table.reject(entry,
+                     "Source = " + table.get("Mesh/Source") + " needs one",
+                     {"Mesh/Source"});
+        return nullptr;
+      }
+    if (source == Source::file)
+      {
+        namespace fs    = std::filesystem;
+        parameters.file = (fs::path(scene).parent_path() / parameters.file)
+                            .lexically_normal()
+                            .string();
+        // The effective scene lies in another folder.
+        table.derive(entry, fs::absolute(parameters.file).string(), entry);
+      }
+
+    const auto idle = [&table](const std::string &entries,
+                               const std::string &reason) {
+      table.without_effect(entries, reason, "Mesh/Source");
+    };
+    if (source != Source::file)
+      idle("Mesh/File, Mesh/Scale, Mesh/Size", "this belongs to Source = file");
+    if (source != Source::generator)
+      idle("Mesh/Generator, Mesh/Arguments",
+           "this belongs to Source = generator");
+    if (source == Source::box)
+      idle("Mesh/Refinements", "a box has its Cells");
+    return dimension == 2 ? make_body_with_pieces<2>(
+                              parameters, parts, constants, entry, table) :
+                            make_body_with_pieces<3>(
+                              parameters, parts, constants, entry, table);
   }
 } // namespace Debond

@@ -400,12 +400,8 @@ namespace Debond
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
     body.memory = memory_left(p.solver.memory_limit);
-    if (const auto made = make_body(scene, p.dimension, body, *this))
-      {
-        add_cuts(*made, body, p.dimension, p.loads.constants, *this);
-        add_parts(*made, parts, p.dimension, p.loads.constants, *this);
-        p.body = made;
-      }
+    p.body =
+      make_body(scene, p.dimension, body, parts, p.loads.constants, *this);
     p.law = laws.make_law(*this);
     complete_output(scene, p.output, *this);
 

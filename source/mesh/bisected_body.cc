@@ -34,25 +34,6 @@ namespace Debond
 
 
 
-  template <int dim>
-  double
-  BisectedBody<dim>::n_vertices() const
-  {
-    return static_cast<double>(bisection.vertices().size());
-  }
-
-
-
-  template <int dim>
-  PieceNames
-  BisectedBody<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
-  {
-    bisection.make_mesh(mesh);
-    return names;
-  }
-
-
-
   template class BisectedBody<2>;
   template class BisectedBody<3>;
 } // namespace Debond

@@ -2,6 +2,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <debond/mesh/bisection.h>
+#include <debond/mesh/mesh_data.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -43,6 +44,19 @@ namespace Debond
 
 
 
+    /// The vertices of the face opposite to the vertex @p v of a cell.
+    template <std::size_t n>
+    std::array<unsigned int, n - 1>
+    without(const unsigned int v, const std::array<unsigned int, n> &vertices)
+    {
+      std::array<unsigned int, n - 1> face;
+      std::copy_n(vertices.begin(), v, face.begin());
+      std::copy(vertices.begin() + v + 1, vertices.end(), face.begin() + v);
+      return face;
+    }
+
+
+
     /// The children of a cell, @p middle being that of its refinement edge.
     template <typename Simplex>
     std::array<Simplex, 2>
@@ -52,6 +66,8 @@ namespace Debond
       const unsigned int last =
         static_cast<unsigned int>(cell.vertices.size()) - 1;
       std::array<Simplex, 2> children{{cell, cell}};
+      if (cell.cuts_left > 0)
+        children[0].cuts_left = children[1].cuts_left = cell.cuts_left - 1;
 
       // The first one loses x_k; its face opposite x_0 is new.
       children[0].vertices[k]   = middle;
@@ -87,17 +103,11 @@ namespace Debond
         simplex.boundaries.fill(dealii::numbers::internal_face_boundary_id);
         for (unsigned int v = 0; v <= dim; ++v)
           simplex.vertices[v] = cell->vertex_index(v);
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary())
-            for (unsigned int v = 0; v <= dim; ++v)
-              {
-                bool is_opposite = true;
-                for (const unsigned int w : face->vertex_indices())
-                  is_opposite =
-                    is_opposite && face->vertex_index(w) != simplex.vertices[v];
-                if (is_opposite)
-                  simplex.boundaries[v] = face->boundary_id();
-              }
+        // deal.II's order of the faces.
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f))
+            simplex.boundaries[dim == 2 ? (f + 2) % 3 : 3 - f] =
+              cell->face(f)->boundary_id();
         cells.push_back(simplex);
       }
     find_twins();
@@ -151,11 +161,7 @@ namespace Debond
     for (unsigned int c = 0; c < cells.size(); ++c)
       for (unsigned int v = 0; v <= dim; ++v)
         {
-          std::array<unsigned int, dim> face;
-          for (unsigned int i = 0, w = 0; w <= dim; ++w)
-            if (w != v)
-              face[i++] = cells[c].vertices[w];
-          face = joined(face);
+          auto face = joined(without(v, cells[c].vertices));
           std::sort(face.begin(), face.end());
           const auto [entry, is_first] =
             open.emplace(face, std::array<unsigned int, 2>{{c, v}});
@@ -295,31 +301,26 @@ namespace Debond
   {
     AssertDimension(times.size(), cells.size());
 
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      {
+        cells[c].cuts_left = times[c];
+        cells[c].whole     = c;
+      }
     // The middle of an edge is a vertex only until all its cells are cut.
-    EdgeMiddles               middles;
-    EdgeMiddles               joined_middles; // of edges with joined() ends
-    std::vector<unsigned int> left = times;
-    whole_cells.resize(cells.size());
-    std::iota(whole_cells.begin(), whole_cells.end(), 0u);
+    EdgeMiddles middles;
+    EdgeMiddles joined_middles; // of edges with joined() ends
     for (bool goes_on = true; goes_on;)
       {
         goes_on = false;
-        std::vector<Simplex>      next;
-        std::vector<unsigned int> next_left;
-        std::vector<unsigned int> next_whole;
+        std::vector<Simplex> next;
         next.reserve(cells.size());
-        next_left.reserve(cells.size());
-        next_whole.reserve(cells.size());
-        for (unsigned int c = 0; c < cells.size(); ++c)
+        for (const Simplex &cell : cells)
           {
-            const Simplex &cell = cells[c];
-            if (left[c] == 0 &&
+            if (cell.cuts_left == 0 &&
                 !has_middle(joined(cell.vertices),
                             twins.empty() ? middles : joined_middles))
               {
                 next.push_back(cell);
-                next_left.push_back(0);
-                next_whole.push_back(whole_cells[c]);
                 continue;
               }
             goes_on              = true;
@@ -338,25 +339,13 @@ namespace Debond
                       .first->second);
               }
             for (const Simplex &half : halves(cell, middle->second))
-              {
-                next.push_back(half);
-                next_left.push_back(left[c] > 0 ? left[c] - 1 : 0);
-                next_whole.push_back(whole_cells[c]);
-              }
+              next.push_back(half);
           }
-        cells       = std::move(next);
-        left        = std::move(next_left);
-        whole_cells = std::move(next_whole);
+        cells = std::move(next);
       }
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  Bisection<dim>::n_cells() const
-  {
-    return static_cast<unsigned int>(cells.size());
+    whole_cells.clear();
+    for (const Simplex &cell : cells)
+      whole_cells.push_back(cell.whole);
   }
 
 
@@ -365,36 +354,24 @@ namespace Debond
   void
   Bisection<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
-    std::vector<dealii::CellData<dim>> data;
-    dealii::SubCellData                subcells;
-    data.reserve(cells.size());
+    MeshData<dim> data;
+    data.vertices = points;
+    data.cells.reserve(cells.size());
     for (const Simplex &cell : cells)
       {
         dealii::Tensor<2, dim> edges;
         for (unsigned int d = 0; d < dim; ++d)
           edges[d] = points[cell.vertices[d + 1]] - points[cell.vertices[0]];
-
-        data.emplace_back(dim + 1);
-        data.back().vertices.assign(cell.vertices.begin(), cell.vertices.end());
-        data.back().material_id = cell.material;
+        auto corners = cell.vertices;
         if (dealii::determinant(edges) < 0.)
-          std::swap(data.back().vertices[dim - 1], data.back().vertices[dim]);
+          std::swap(corners[dim - 1], corners[dim]);
+        data.add_cell(corners, cell.material);
 
         for (unsigned int v = 0; v <= dim; ++v)
           if (cell.boundaries[v] != dealii::numbers::internal_face_boundary_id)
-            {
-              dealii::CellData<dim - 1> face(dim);
-              for (unsigned int i = 0, w = 0; w <= dim; ++w)
-                if (w != v)
-                  face.vertices[i++] = cell.vertices[w];
-              face.boundary_id = cell.boundaries[v];
-              if constexpr (dim == 2)
-                subcells.boundary_lines.push_back(face);
-              else
-                subcells.boundary_quads.push_back(face);
-            }
+            data.add_face(without(v, cell.vertices), cell.boundaries[v]);
       }
-    mesh.create_triangulation(points, data, subcells);
+    data.make_mesh(mesh);
   }
 
 

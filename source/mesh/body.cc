@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/bounding_box.h>
-#include <deal.II/numerics/rtree.h>
-
 #include <debond/base/tolerances.h>
 #include <debond/mesh/body.h>
+#include <debond/mesh/cell_search.h>
 #include <debond/mesh/cuts.h>
 #include <debond/mesh/parts.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace Debond
@@ -32,7 +29,9 @@ namespace Debond
   std::set<std::string>
   Body<dim>::boundaries() const
   {
-    std::set<std::string> names = whole_boundaries();
+    std::set<std::string> names;
+    for (const auto &[name, unused] : whole_names().boundaries)
+      names.insert(name);
     for (const Cut<dim> &cut : cuts)
       names.insert({cut.name, cut.name + "_low", cut.name + "_high"});
     for (const Part<dim> &part : parts)
@@ -47,7 +46,9 @@ namespace Debond
   std::set<std::string>
   Body<dim>::regions() const
   {
-    std::set<std::string> names = whole_regions();
+    std::set<std::string> names;
+    for (const auto &[name, unused] : whole_names().regions)
+      names.insert(name);
     for (const Part<dim> &part : parts)
       if (part.boundary.empty())
         names.insert(part.name);
@@ -60,7 +61,8 @@ namespace Debond
   PieceNames
   Body<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
-    PieceNames names = make_whole_mesh(mesh);
+    make_whole_mesh(mesh);
+    PieceNames names = whole_names();
     if (!cuts.empty())
       names = cut_into_bodies(cuts, names, mesh);
     return parts.empty() ? names : name_parts(parts, names, mesh);
@@ -92,104 +94,6 @@ namespace Debond
 
 
 
-  namespace
-  {
-    /// Finds the cells of a mesh of simplices that points lie in, or next to.
-    template <int dim>
-    class CellSearch
-    {
-    public:
-      explicit CellSearch(const dealii::Triangulation<dim> &mesh)
-        : boxes(boxes_of(mesh))
-        , tree(dealii::pack_rtree_of_indices(boxes))
-      {
-        for (const auto &cell : mesh.active_cell_iterators())
-          cells.push_back(cell);
-      }
-
-      /// The tree keeps a reference to the boxes.
-      CellSearch(const CellSearch &) = delete;
-
-      /// The vertices of a cell that the point is inside of, or least outside,
-      /// and its barycentric coordinates there.
-      typename LinearFields<dim>::Weights
-      operator()(const dealii::Point<dim> &point) const
-      {
-        namespace index = boost::geometry::index;
-        std::vector<std::size_t> nearest;
-        double                   farthest = -std::numeric_limits<double>::max();
-        typename LinearFields<dim>::Weights result;
-        const auto look_at = [&](const std::size_t candidate) {
-          const auto              &cell   = cells[candidate];
-          const dealii::Point<dim> origin = cell->vertex(0);
-          dealii::Tensor<2, dim>   edges; // as columns
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int c = 0; c < dim; ++c)
-              edges[c][d] = cell->vertex(d + 1)[c] - origin[c];
-          const dealii::Tensor<1, dim> xi =
-            dealii::invert(edges) * (point - origin);
-          double first = 1., least = 1.;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              first -= xi[d];
-              least = std::min(least, xi[d]);
-            }
-          least = std::min(least, first);
-          if (least <= farthest)
-            return;
-          farthest  = least;
-          result[0] = {cell->vertex_index(0), first};
-          for (unsigned int d = 0; d < dim; ++d)
-            result[d + 1] = {cell->vertex_index(d + 1), xi[d]};
-        };
-        // Any cell that the point is inside of will do.
-        for (auto found = tree.qbegin(index::intersects(point));
-             found != tree.qend() && farthest < -Tolerance::same_cell;
-             ++found)
-          look_at(*found);
-        if (farthest == -std::numeric_limits<double>::max())
-          tree.query(index::nearest(point, 1), std::back_inserter(nearest));
-        for (const std::size_t candidate : nearest)
-          look_at(candidate);
-        return result;
-      }
-
-    private:
-      static std::vector<dealii::BoundingBox<dim>>
-      boxes_of(const dealii::Triangulation<dim> &mesh)
-      {
-        std::vector<dealii::BoundingBox<dim>> boxes;
-        for (const auto &cell : mesh.active_cell_iterators())
-          boxes.push_back(cell->bounding_box());
-        return boxes;
-      }
-
-      std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
-                                                  cells;
-      const std::vector<dealii::BoundingBox<dim>> boxes;
-      const decltype(dealii::pack_rtree_of_indices(
-        std::vector<dealii::BoundingBox<dim>>())) tree;
-    };
-  } // namespace
-
-
-
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  Body<dim>::interpolate(const dealii::Triangulation<dim>          &mesh,
-                         const std::vector<dealii::Tensor<1, dim>> &values,
-                         const std::vector<dealii::Point<dim>> &points) const
-  {
-    const CellSearch<dim>               search(mesh);
-    std::vector<dealii::Tensor<1, dim>> result(points.size());
-    for (std::size_t p = 0; p < points.size(); ++p)
-      for (const auto &[vertex, weight] : search(points[p]))
-        result[p] += weight * values[vertex];
-    return result;
-  }
-
-
-
   template <int dim>
   std::unique_ptr<Body<dim>>
   Body<dim>::coarser_level() const
@@ -202,16 +106,32 @@ namespace Debond
 
 
   template <int dim>
+  bool
+  Body<dim>::has_coarse_levels() const
+  {
+    std::unique_ptr<const Body> last;
+    for (auto level = coarser_level(); level; level = last->coarser_level())
+      last = std::move(level);
+    return last && last->n_vertices() <= most_coarsest_vertices;
+  }
+
+
+
+  template <int dim>
   LinearFields<dim>
   Body<dim>::linear_fields() const
   {
     const auto mesh = std::make_shared<dealii::Triangulation<dim>>();
     make_whole_mesh(*mesh);
     const auto search = std::make_shared<const CellSearch<dim>>(*mesh);
-    return {mesh->get_vertices(),
-            [mesh, search](const dealii::Point<dim> &point) {
-              return (*search)(point);
-            }};
+    return {
+      mesh->get_vertices(), [mesh, search](const dealii::Point<dim> &point) {
+        const auto                          found = (*search)(point);
+        typename LinearFields<dim>::Weights weights;
+        for (unsigned int v = 0; v <= dim; ++v)
+          weights[v] = {found.cell->vertex_index(v), found.coordinates[v]};
+        return weights;
+      }};
   }
 
 

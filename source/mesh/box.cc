@@ -20,8 +20,8 @@ namespace Debond
     /// joined: smoothers have no grip on what varies slowly along them.
     constexpr double longest_joined = 1.5;
 
-    /// Of a coarser cell, the longest side over the shortest, where finer ones
-    /// are rounder.
+    /// The longest side of a coarser cell over the shortest, at most, where
+    /// finer ones are rounder.
     constexpr double most_stretched = 1.9;
 
 
@@ -44,60 +44,25 @@ namespace Debond
 
 
   template <int dim>
-  const std::map<std::string, dealii::types::boundary_id> &
+  std::map<std::string, dealii::types::boundary_id>
   box_sides()
   {
-    using Sides = std::map<std::string, dealii::types::boundary_id>;
-    static const Sides names = [] {
-      Sides sides = {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}};
-      if (dim == 3)
-        {
-          sides["back"]  = 4;
-          sides["front"] = 5;
-        }
-      return sides;
-    }();
-    return names;
-  }
-
-
-
-  template <int dim>
-  BoundaryNames
-  box_boundaries()
-  {
-    BoundaryNames names;
-    for (const auto &[side, id] : box_sides<dim>())
-      names[side] = {id};
-    return names;
-  }
-
-
-
-  template <int dim>
-  void
-  make_box(const BoxParameters &parameters, dealii::Triangulation<dim> &crossed)
-  {
-    for (unsigned int d = 0; d < dim; ++d)
+    std::map<std::string, dealii::types::boundary_id> sides = {{"left", 0},
+                                                               {"right", 1},
+                                                               {"bottom", 2},
+                                                               {"top", 3}};
+    if (dim == 3)
       {
-        if (!(parameters.lengths[d] > 0.))
-          throw std::invalid_argument(
-            "Box: length " + std::to_string(parameters.lengths[d]) +
-            " in direction " + std::to_string(d) + " must be positive.");
-        if (parameters.cells[d] == 0)
-          throw std::invalid_argument("Box: the number of cells in direction " +
-                                      std::to_string(d) +
-                                      " is 0, it must be at least 1.");
+        sides["back"]  = 4;
+        sides["front"] = 5;
       }
-    const CellsAndVertices<dim> all =
-      part_of_box<dim>(parameters, {}, parameters.cells);
-    crossed.create_triangulation(all.vertices, all.cells, all.faces);
+    return sides;
   }
 
 
 
   template <int dim>
-  CellsAndVertices<dim>
+  MeshData<dim>
   part_of_box(const BoxParameters               &box,
               const std::array<unsigned int, 3> &begin,
               const std::array<unsigned int, 3> &n_cells)
@@ -107,12 +72,15 @@ namespace Debond
     dealii::Point<dim> first, last;
     for (unsigned int d = 0; d < dim; ++d)
       {
+        if (!(box.lengths[d] > 0.) || box.cells[d] == 0)
+          throw std::invalid_argument(
+            "Box: lengths and numbers of cells must be positive.");
         first[d] = begin[d];
         last[d]  = begin[d] + n_cells[d];
       }
-    dealii::Triangulation<dim> coarse;
+    dealii::Triangulation<dim> cells;
     dealii::GridGenerator::subdivided_hyper_rectangle(
-      coarse,
+      cells,
       std::vector<unsigned int>(n_cells.begin(), n_cells.begin() + dim),
       first,
       last,
@@ -123,67 +91,15 @@ namespace Debond
           point[d] *= box.lengths[d] / box.cells[d];
         return point;
       },
-      coarse);
-    std::vector<typename dealii::Triangulation<dim>::cell_iterator> cells;
-    for (const auto &cell : coarse.active_cell_iterators())
-      cells.push_back(cell);
-    CellsAndVertices<dim> result =
-      crossed_cells<dim>(cells, dealii::numbers::invalid_boundary_id);
-
+      cells);
+    MeshData<dim> crossed = crossed_subdivision(cells);
     if (box.rotation != 0.)
       {
         const auto rotation = rotation_matrix<dim>(box.rotation);
-        for (dealii::Point<dim> &vertex : result.vertices)
+        for (dealii::Point<dim> &vertex : crossed.vertices)
           vertex = dealii::Point<dim>(rotation * vertex);
       }
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  Box<dim>::whole_boundaries() const
-  {
-    std::set<std::string> names;
-    for (const auto &[side, unused] : box_sides<dim>())
-      names.insert(side);
-    return names;
-  }
-
-
-
-  template <int dim>
-  double
-  Box<dim>::n_cells() const
-  {
-    const auto &n = parameters.cells;
-    return dim == 2 ? 4. * n[0] * n[1] : 24. * n[0] * n[1] * n[2];
-  }
-
-
-
-  template <int dim>
-  double
-  Box<dim>::n_vertices() const
-  {
-    const auto &n = parameters.cells;
-    if (dim == 2)
-      return (n[0] + 1.) * (n[1] + 1.) + 1. * n[0] * n[1];
-    const double faces = (n[0] + 1.) * n[1] * n[2] + n[0] * (n[1] + 1.) * n[2] +
-                         (n[2] + 1.) * n[0] * n[1];
-    return (n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces +
-           1. * n[0] * n[1] * n[2];
-  }
-
-
-
-  template <int dim>
-  PieceNames
-  Box<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
-  {
-    make_box(parameters, mesh);
-    return {box_boundaries<dim>(), {}};
+    return crossed;
   }
 
 
@@ -339,18 +255,6 @@ namespace Debond
 
 
   template <int dim>
-  bool
-  Box<dim>::has_coarse_levels() const
-  {
-    std::unique_ptr<const Body<dim>> last;
-    for (auto level = coarser_level(); level; level = last->coarser_level())
-      last = std::move(level);
-    return last && last->n_vertices() <= most_coarsest_vertices;
-  }
-
-
-
-  template <int dim>
   dealii::Tensor<2, dim>
   rotation_matrix(const double degrees)
   {
@@ -369,10 +273,6 @@ namespace Debond
   template decltype(rotation_matrix<3>) rotation_matrix<3>;
   template decltype(box_sides<2>)       box_sides<2>;
   template decltype(box_sides<3>)       box_sides<3>;
-  template decltype(box_boundaries<2>)  box_boundaries<2>;
-  template decltype(box_boundaries<3>)  box_boundaries<3>;
-  template decltype(make_box<2>)        make_box<2>;
-  template decltype(make_box<3>)        make_box<3>;
   template decltype(part_of_box<2>)     part_of_box<2>;
   template decltype(part_of_box<3>)     part_of_box<3>;
   template class Box<2>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
-#include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/cuts.h>
 #include <debond/mesh/field_value.h>
+#include <debond/mesh/mesh_data.h>
 
 #include <algorithm>
 #include <array>
@@ -14,34 +14,39 @@ namespace Debond
 {
   namespace
   {
-    /// The numbers of its vertices in ascending order.
     template <int dim>
-    using CutKey = std::array<unsigned int, dim>;
+    using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
 
-
-
-    template <int dim, typename Face>
-    CutKey<dim>
-    cut_key(const Face &face)
+    template <typename Object>
+    std::vector<unsigned int>
+    vertices_of(const Object &object)
     {
-      CutKey<dim> key;
-      for (unsigned int v = 0; v < dim; ++v)
-        key[v] = face->vertex_index(v);
-      std::sort(key.begin(), key.end());
-      return key;
+      std::vector<unsigned int> vertices;
+      for (const unsigned int v : object->vertex_indices())
+        vertices.push_back(object->vertex_index(v));
+      return vertices;
+    }
+
+    bool
+    has(const std::vector<unsigned int> &vertices, const unsigned int vertex)
+    {
+      return std::count(vertices.begin(), vertices.end(), vertex) > 0;
     }
 
 
 
     /// A face between two cells through which a cut goes.
+    template <int dim>
     struct CutFace
     {
-      unsigned int                cut;
-      std::array<unsigned int, 2> cells; ///< on the low side, on the high one
+      unsigned int              cut;
+      std::vector<unsigned int> vertices;
+      std::array<Cell<dim>, 2>  cells; ///< on the low side, on the high one
     };
 
+    /// They are found by the numbers of the faces in the mesh.
     template <int dim>
-    using CutFaces = std::map<CutKey<dim>, CutFace>;
+    using CutFaces = std::map<unsigned int, CutFace<dim>>;
 
 
 
@@ -73,9 +78,10 @@ namespace Debond
                     is_in(cell, cuts[k].low) && is_in(other, cuts[k].high);
                 if (!is_cut)
                   continue;
-                const CutFace face = {
-                  k, {{cell->active_cell_index(), other->active_cell_index()}}};
-                if (!faces.emplace(cut_key<dim>(cell->face(f)), face).second)
+                const CutFace<dim> face = {k,
+                                           vertices_of(cell->face(f)),
+                                           {{cell, other}}};
+                if (!faces.emplace(cell->face_index(f), face).second)
                   throw std::invalid_argument(cuts[k].text +
                                               " overlaps a cut before it");
                 has_faces[k] = 1;
@@ -90,6 +96,62 @@ namespace Debond
                     ": the regions have no face in common"));
       return faces;
     }
+
+
+
+    /// Gives the cells around a vertex that lie on the high side of cuts a
+    /// vertex of their own, unless they are joined with the others by faces
+    /// that are not cut. Throws std::invalid_argument if they are of more than
+    /// two bodies.
+    template <int dim>
+    void
+    open_vertex(const unsigned int            vertex,
+                const std::vector<Cell<dim>> &cells,
+                const CutFaces<dim>          &faces,
+                MeshData<dim>                &data)
+    {
+      std::map<unsigned int, unsigned int> body; // of a cell, by a cell of it
+      for (const auto &cell : cells)
+        body[cell->active_cell_index()] = cell->active_cell_index();
+      std::set<unsigned int> cut;
+      for (const auto &cell : cells)
+        for (const unsigned int f : cell->face_indices())
+          if (!cell->at_boundary(f) && has(vertices_of(cell->face(f)), vertex))
+            {
+              const unsigned int a = body[cell->active_cell_index()],
+                                 b =
+                                   body[cell->neighbor(f)->active_cell_index()];
+              if (faces.count(cell->face_index(f)) > 0)
+                cut.insert(cell->face_index(f));
+              else
+                for (auto &[unused, of_cell] : body)
+                  if (of_cell == a)
+                    of_cell = b;
+            }
+      std::set<unsigned int> bodies, low, high;
+      for (const auto &[unused, of_cell] : body)
+        bodies.insert(of_cell);
+      if (bodies.size() == 1)
+        return;
+      for (const unsigned int face : cut)
+        {
+          const auto &[low_cell, high_cell] = faces.at(face).cells;
+          low.insert(body[low_cell->active_cell_index()]);
+          high.insert(body[high_cell->active_cell_index()]);
+        }
+      const dealii::Point<dim> place = data.vertices[vertex];
+      if (bodies.size() > 2 || low.size() > 1 || high.size() > 1 || low == high)
+        throw std::invalid_argument(
+          "more than two bodies meet in the point " + point_text(place) +
+          ": let cuts end before others, or join two of the bodies there");
+      for (const auto &[cell, of_cell] : body)
+        if (of_cell == *high.begin())
+          std::replace(data.cells[cell].vertices.begin(),
+                       data.cells[cell].vertices.end(),
+                       vertex,
+                       static_cast<unsigned int>(data.vertices.size()));
+      data.vertices.push_back(place);
+    }
   } // namespace
 
 
@@ -100,88 +162,22 @@ namespace Debond
                   const PieceNames            &before,
                   dealii::Triangulation<dim>  &mesh)
   {
-    const CutFaces<dim>   faces = find_faces(cuts, before.regions, mesh);
-    CellsAndVertices<dim> result;
-    result.vertices = mesh.get_vertices();
-    std::map<unsigned int, std::vector<unsigned int>> cells_at; // the cuts
-    for (const auto &[key, unused] : faces)
-      for (const unsigned int v : key)
+    const CutFaces<dim> faces = find_faces(cuts, before.regions, mesh);
+    MeshData<dim>       data;
+    data.vertices = mesh.get_vertices();
+    std::map<unsigned int, std::vector<Cell<dim>>> cells_at; // the cuts
+    for (const auto &[unused, face] : faces)
+      for (const unsigned int v : face.vertices)
         cells_at[v];
     for (const auto &cell : mesh.active_cell_iterators())
       {
-        result.cells.emplace_back(dim + 1);
-        result.cells.back().material_id = cell->material_id();
-        for (unsigned int v = 0; v <= dim; ++v)
-          {
-            result.cells.back().vertices[v] = cell->vertex_index(v);
-            if (const auto at = cells_at.find(cell->vertex_index(v));
-                at != cells_at.end())
-              at->second.push_back(cell->active_cell_index());
-          }
+        data.add_cell(vertices_of(cell), cell->material_id());
+        for (const unsigned int v : vertices_of(cell))
+          if (const auto at = cells_at.find(v); at != cells_at.end())
+            at->second.push_back(cell);
       }
-    const std::vector<dealii::CellData<dim>> whole = result.cells;
-    const auto face_keys = [&](const unsigned int cell) {
-      std::array<CutKey<dim>, dim + 1> keys;
-      for (unsigned int f = 0; f <= dim; ++f)
-        {
-          for (unsigned int v = 0, k = 0; v <= dim; ++v)
-            if (v != f)
-              keys[f][k++] = whole[cell].vertices[v];
-          std::sort(keys[f].begin(), keys[f].end());
-        }
-      return keys;
-    };
-
-    // Around a vertex cells that are joined by faces that are not cut have it
-    // in common.
     for (const auto &[v, cells] : cells_at)
-      {
-        std::map<unsigned int, unsigned int>             body; // of a cell
-        std::map<CutKey<dim>, std::vector<unsigned int>> sharers;
-        for (const unsigned int cell : cells)
-          {
-            body[cell] = cell;
-            for (const CutKey<dim> &key : face_keys(cell))
-              if (std::count(key.begin(), key.end(), v) > 0 &&
-                  faces.count(key) == 0)
-                sharers[key].push_back(cell);
-          }
-        const auto unite = [&body](const unsigned int a, const unsigned int b) {
-          for (auto &[unused, of_cell] : body)
-            if (of_cell == a)
-              of_cell = b;
-        };
-        for (const auto &[unused, of_face] : sharers)
-          if (of_face.size() == 2)
-            unite(body[of_face[0]], body[of_face[1]]);
-        std::set<unsigned int> bodies, low, high;
-        for (const auto &[unused, of_cell] : body)
-          bodies.insert(of_cell);
-        if (bodies.size() == 1)
-          continue;
-        for (const unsigned int cell : cells)
-          for (const CutKey<dim> &key : face_keys(cell))
-            if (const auto face = faces.find(key);
-                face != faces.end() &&
-                std::count(key.begin(), key.end(), v) > 0)
-              {
-                low.insert(body[face->second.cells[0]]);
-                high.insert(body[face->second.cells[1]]);
-              }
-        if (bodies.size() > 2 || low.size() > 1 || high.size() > 1 ||
-            low == high)
-          throw std::invalid_argument(
-            "more than two bodies meet in the point " +
-            point_text(mesh.get_vertices()[v]) +
-            ": let cuts end before others, or join two of the bodies there");
-        for (const unsigned int cell : cells)
-          if (body[cell] == *high.begin())
-            std::replace(result.cells[cell].vertices.begin(),
-                         result.cells[cell].vertices.end(),
-                         v,
-                         static_cast<unsigned int>(result.vertices.size()));
-        result.vertices.push_back(mesh.get_vertices()[v]);
-      }
+      open_vertex(v, cells, faces, data);
 
     PieceNames                 names = before;
     dealii::types::boundary_id next  = 0;
@@ -195,45 +191,36 @@ namespace Debond
         names.boundaries[cut.name + "_high"] = {next++};
         names.interfaces.insert(cut.name);
       }
-    const auto add_face = [&](const unsigned int               cell,
-                              const CutKey<dim>               &key,
-                              const dealii::types::boundary_id id) {
-      auto &all = [&]() -> auto &
-      {
-        if constexpr (dim == 2)
-          return result.faces.boundary_lines;
-        else
-          return result.faces.boundary_quads;
-      }
-      ();
-      all.emplace_back(dim);
-      all.back().boundary_id = id;
-      for (unsigned int v = 0, k = 0; v <= dim; ++v)
-        if (std::count(key.begin(), key.end(), whole[cell].vertices[v]) > 0)
-          all.back().vertices[k++] = result.cells[cell].vertices[v];
-      std::vector<unsigned int> vertices = all.back().vertices;
-      std::sort(vertices.begin(), vertices.end());
+
+    // The vertices that a cell has now on a face of the mesh.
+    const auto side = [&data](const auto                      &cell,
+                              const std::vector<unsigned int> &face) {
+      std::vector<unsigned int> vertices;
+      for (const unsigned int v : cell->vertex_indices())
+        if (has(face, cell->vertex_index(v)))
+          vertices.push_back(data.cells[cell->active_cell_index()].vertices[v]);
       return vertices;
     };
     for (const auto &cell : mesh.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
-          add_face(cell->active_cell_index(),
-                   cut_key<dim>(face),
-                   face->boundary_id());
-    for (const auto &[key, face] : faces)
+          data.add_face(side(cell, vertices_of(face)), face->boundary_id());
+    for (const auto &[unused, face] : faces)
       {
-        const auto id = first_id + 2 * face.cut;
-        if (add_face(face.cells[0], key, id) ==
-            add_face(face.cells[1], key, id + 1))
+        const auto id   = first_id + 2 * face.cut;
+        const auto low  = side(face.cells[0], face.vertices),
+                   high = side(face.cells[1], face.vertices);
+        if (std::is_permutation(low.begin(), low.end(), high.begin()))
           throw std::invalid_argument(
             words(cuts[face.cut].text,
                   " has a single face at ",
-                  point_text(mesh.get_vertices()[key[0]]),
+                  point_text(mesh.get_vertices()[face.vertices[0]]),
                   " between two points inside, which does not open"));
+        data.add_face(low, id);
+        data.add_face(high, id + 1);
       }
     mesh.clear();
-    mesh.create_triangulation(result.vertices, result.cells, result.faces);
+    data.make_mesh(mesh);
     return names;
   }
 

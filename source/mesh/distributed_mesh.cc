@@ -39,7 +39,7 @@ namespace Debond
     template <int dim>
     using CellInfo = dealii::TriangulationDescription::CellData<dim>;
 
-    /// Of a cell of a box.
+    /// The number of simplices of a cell of a box.
     template <int dim>
     constexpr unsigned int n_simplices = dim == 2 ? 4 : 24;
 
@@ -67,7 +67,8 @@ namespace Debond
 
 
 
-    /// What a rank needs of the mesh that the first one has, and gives away.
+    /// The part that a rank needs of the mesh that the first one has, and gives
+    /// away.
     template <int dim>
     Description<dim>
     part_of_mesh(dealii::Triangulation<dim> &whole, const MPI_Comm ranks)
@@ -94,22 +95,6 @@ namespace Debond
       return static_cast<unsigned int>(
         std::max_element(box.cells.begin(), box.cells.begin() + dim) -
         box.cells.begin());
-    }
-
-
-
-    /// Whether it is one that has no parts or cuts, and a layer for each rank.
-    template <int dim>
-    bool
-    has_layers(const Box<dim> &box, const unsigned int n_ranks)
-    {
-      const BoxParameters &of_box = box.parameters;
-      // Not that ranks fail together where a single one is to say why.
-      for (unsigned int d = 0; d < dim; ++d)
-        if (!(of_box.lengths[d] > 0.) || of_box.cells[d] == 0)
-          return false;
-      return box.parts.empty() && box.cuts.empty() &&
-             of_box.cells[direction_of_layers<dim>(of_box)] >= n_ranks;
     }
 
 
@@ -143,8 +128,8 @@ namespace Debond
 
 
 
-    /// What a rank needs of a box that has_layers(). The owner of a layer is
-    /// [layer n_ranks / n_layers].
+    /// The part that a rank needs of a box with a layer of cells for each rank.
+    /// The owner of a layer is [layer n_ranks / n_layers].
     template <int dim>
     Description<dim>
     part_of_layers(const BoxParameters &box, const MPI_Comm ranks)
@@ -163,8 +148,8 @@ namespace Debond
       begin[direction] = std::max(first_layer(rank), 1u) - 1;
       n_cells[direction] =
         std::min(first_layer(rank + 1) + 1, n_layers) - begin[direction];
-      const CellsAndVertices<dim> part = part_of_box<dim>(box, begin, n_cells);
-      const auto                  place_of = [&](std::size_t simplex) {
+      const MeshData<dim> part     = part_of_box<dim>(box, begin, n_cells);
+      const auto          place_of = [&](std::size_t simplex) {
         simplex /= n_simplices<dim>;
         std::array<unsigned int, 3> place = begin;
         for (unsigned int d = 0; d < dim; ++d)
@@ -243,10 +228,12 @@ namespace Debond
       std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(
         ranks);
     const auto *box = dynamic_cast<const Box<dim> *>(&body);
-    if (box != nullptr && has_layers(*box, n_ranks))
+    if (box != nullptr && box->parts.empty() && box->cuts.empty() &&
+        box->parameters.cells[direction_of_layers<dim>(box->parameters)] >=
+          n_ranks)
       {
         mesh->create_triangulation(part_of_layers<dim>(box->parameters, ranks));
-        result.names.boundaries = box_boundaries<dim>();
+        result.names = box->whole_names();
       }
     else
       {

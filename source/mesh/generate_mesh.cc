@@ -14,7 +14,7 @@ namespace Debond
 {
   namespace
   {
-    /// What an exception of deal.II says, without where it was thrown.
+    /// The words of an exception of deal.II, without where it was thrown.
     std::string
     words_of(const dealii::ExceptionBase &error)
     {

@@ -50,7 +50,7 @@ namespace Debond
 {
   namespace
   {
-    /// Whether this is a .msh file of a version before 4. Throws
+    /// Returns whether this is a .msh file of a version before 4. Throws
     /// std::invalid_argument if it is a .unv file with groups that Gmsh drops.
     bool
     is_old_msh(const std::string &file_name)
@@ -83,7 +83,7 @@ namespace Debond
 
 
 
-    /// What Gmsh has had to say of errors.
+    /// The errors that Gmsh has logged, in one line.
     std::string
     errors_of_gmsh()
     {
@@ -135,6 +135,68 @@ namespace Debond
                                           ", and there are ",
                                           in_gib(memory),
                                           ": make it larger"));
+    }
+
+
+
+    /// Adds the elements of an entity. Throws std::invalid_argument if they are
+    /// of a kind that is not read.
+    void
+    add_elements(const int  dimension,
+                 const int  entity,
+                 const bool is_old,
+                 GmshFile  &file)
+    {
+      std::vector<std::size_t> ghosts;
+      std::vector<int>         numbers;
+      gmsh::model::mesh::getGhostElements(dimension, entity, ghosts, numbers);
+      file.n_ghosts += ghosts.size();
+      // A piece of a partition has the groups of what it is a piece of,
+      // and faces between pieces are none of the file's.
+      int of_dimension, whole;
+      gmsh::model::getParent(dimension, entity, of_dimension, whole);
+      if (whole < 0)
+        std::tie(of_dimension, whole) = std::tie(dimension, entity);
+      if (!ghosts.empty() || of_dimension != dimension)
+        return;
+      numbers = {entity};
+      if (!is_old)
+        gmsh::model::getPhysicalGroupsForEntity(dimension, whole, numbers);
+      std::map<int, std::string> groups;
+      for (const int number : numbers)
+        if (const int group = std::abs(number); group != 0)
+          gmsh::model::getPhysicalName(dimension, group, groups[group]);
+
+      std::vector<int>                      types;
+      std::vector<std::vector<std::size_t>> tags, nodes;
+      gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
+      for (std::size_t k = 0; k < types.size(); ++k)
+        {
+          GmshFile::Elements elements = {
+            dimension, entity, 1, 0, tags[k], {}, groups};
+          std::string         name;
+          int                 same_dimension, n_nodes;
+          std::vector<double> unused;
+          gmsh::model::mesh::getElementProperties(types[k],
+                                                  name,
+                                                  same_dimension,
+                                                  elements.order,
+                                                  n_nodes,
+                                                  unused,
+                                                  elements.n_corners);
+          if (elements.n_corners <= dimension)
+            throw std::invalid_argument(
+              words("element ",
+                    tags[k][0],
+                    " is of a kind that is not read, ",
+                    name));
+          for (std::size_t e = 0; e < tags[k].size(); ++e)
+            elements.corners.insert(elements.corners.end(),
+                                    nodes[k].begin() + e * n_nodes,
+                                    nodes[k].begin() + e * n_nodes +
+                                      elements.n_corners);
+          file.elements.push_back(std::move(elements));
+        }
     }
 
 
@@ -191,62 +253,8 @@ namespace Debond
 
       gmsh::model::getEntities(entities);
       for (const auto &[dimension, entity] : entities)
-        {
-          if (dimension < dim - 1)
-            continue;
-          std::vector<std::size_t> ghosts;
-          std::vector<int>         numbers;
-          gmsh::model::mesh::getGhostElements(dimension,
-                                              entity,
-                                              ghosts,
-                                              numbers);
-          file.n_ghosts += ghosts.size();
-          // A piece of a partition has the groups of what it is a piece of,
-          // and faces between pieces are none of the file's.
-          int of_dimension, whole;
-          gmsh::model::getParent(dimension, entity, of_dimension, whole);
-          if (whole < 0)
-            std::tie(of_dimension, whole) = std::tie(dimension, entity);
-          if (!ghosts.empty() || of_dimension != dimension)
-            continue;
-          numbers = {entity};
-          if (!is_old)
-            gmsh::model::getPhysicalGroupsForEntity(dimension, whole, numbers);
-          std::map<int, std::string> groups;
-          for (const int number : numbers)
-            if (const int group = std::abs(number); group != 0)
-              gmsh::model::getPhysicalName(dimension, group, groups[group]);
-
-          std::vector<int>                      types;
-          std::vector<std::vector<std::size_t>> tags, nodes;
-          gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
-          for (std::size_t k = 0; k < types.size(); ++k)
-            {
-              GmshFile::Elements elements = {
-                dimension, entity, 1, 0, tags[k], {}, groups};
-              std::string name;
-              int         same_dimension, n_nodes;
-              gmsh::model::mesh::getElementProperties(types[k],
-                                                      name,
-                                                      same_dimension,
-                                                      elements.order,
-                                                      n_nodes,
-                                                      unused,
-                                                      elements.n_corners);
-              if (elements.n_corners <= dimension)
-                throw std::invalid_argument(
-                  words("element ",
-                        tags[k][0],
-                        " is of a kind that is not read, ",
-                        name));
-              for (std::size_t e = 0; e < tags[k].size(); ++e)
-                elements.corners.insert(elements.corners.end(),
-                                        nodes[k].begin() + e * n_nodes,
-                                        nodes[k].begin() + e * n_nodes +
-                                          elements.n_corners);
-              file.elements.push_back(std::move(elements));
-            }
-        }
+        if (dimension >= dim - 1)
+          add_elements(dimension, entity, is_old, file);
       return file;
     }
 

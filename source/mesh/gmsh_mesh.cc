@@ -5,6 +5,7 @@
 
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
+#include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/gmsh_file.h>
 #include <debond/mesh/source_mesh.h>
 
@@ -23,23 +24,6 @@ namespace Debond
 {
   namespace
   {
-    /// Of a face, sorted; invalid ones fill up.
-    using FaceKey = std::array<unsigned int, 4>;
-
-    FaceKey
-    key(std::vector<unsigned int> corners)
-    {
-      FaceKey result;
-      result.fill(dealii::numbers::invalid_unsigned_int);
-      std::sort(corners.begin(), corners.end());
-      std::copy_n(corners.begin(),
-                  std::min<std::size_t>(corners.size(), 4),
-                  result.begin());
-      return result;
-    }
-
-
-
     /**
      * Makes a triangulation of what Gmsh reads, and checks that it is a body.
      * All checks are those of simplices: other cells are looked at as they will
@@ -69,33 +53,18 @@ namespace Debond
       std::unique_ptr<SourceMesh<dim>>
       make()
       {
-        auto     source = std::make_unique<SourceMesh<dim>>();
-        GroupIds boundary_ids, region_ids;
-        std::vector<dealii::CellData<dim>> cell_data;
-        dealii::SubCellData                subcells;
-        const auto add = [](auto &list, const auto &corners) -> auto &
-        {
-          list.emplace_back(static_cast<unsigned int>(corners.size()));
-          std::copy(corners.begin(),
-                    corners.end(),
-                    list.back().vertices.begin());
-          return list.back();
-        };
+        auto          source = std::make_unique<SourceMesh<dim>>();
+        GroupIds      boundary_ids, region_ids;
+        MeshData<dim> data;
         if (is_hypercube)
           for (const Element &cell : cells)
-            add(cell_data, cell.corners).material_id =
-              region_ids.id(cell.groups);
+            data.add_cell(cell.corners, region_ids.id(cell.groups));
         else
           for (const Simplex &simplex : simplices)
-            add(cell_data, simplex.corners).material_id =
-              region_ids.id(cells[simplex.cell].groups);
+            data.add_cell(simplex.corners,
+                          region_ids.id(cells[simplex.cell].groups));
         for (const auto &[unused, face] : outer_faces)
-          if constexpr (dim == 2)
-            add(subcells.boundary_lines, face.corners).boundary_id =
-              boundary_ids.id(face.groups);
-          else
-            add(subcells.boundary_quads, face.corners).boundary_id =
-              boundary_ids.id(face.groups);
+          data.add_face(face.corners, boundary_ids.id(face.groups));
 
         take_names(boundary_ids, dim - 1, source->names.boundaries);
         take_names(region_ids, dim, source->names.regions);
@@ -108,22 +77,24 @@ namespace Debond
             "taken: sides are straight between them");
         source->names.notes = notes;
 
-        dealii::GridTools::delete_unused_vertices(vertices,
-                                                  cell_data,
-                                                  subcells);
+        data.vertices = std::move(vertices);
+        dealii::GridTools::delete_unused_vertices(data.vertices,
+                                                  data.cells,
+                                                  data.faces);
         if (is_hypercube)
           {
-            dealii::GridTools::invert_cells_with_negative_measure(vertices,
-                                                                  cell_data);
-            dealii::GridTools::consistently_order_cells(cell_data);
+            dealii::GridTools::invert_cells_with_negative_measure(data.vertices,
+                                                                  data.cells);
+            dealii::GridTools::consistently_order_cells(data.cells);
           }
-        source->mesh.create_triangulation(vertices, cell_data, subcells);
+        data.make_mesh(source->mesh);
         return source;
       }
 
     private:
-      using Corners = std::vector<unsigned int>;
+      using Corners = typename CellCrossing<dim>::Corners;
       using Groups  = std::set<int>;
+      using FaceKey = std::array<unsigned int, dim>; ///< of a simplex, sorted
 
       struct Element
       {
@@ -155,6 +126,15 @@ namespace Debond
       fail(const std::string &message) const
       {
         throw std::invalid_argument(file_name + ": " + message);
+      }
+
+      static FaceKey
+      key(const Corners &corners)
+      {
+        FaceKey result;
+        std::copy_n(corners.begin(), dim, result.begin());
+        std::sort(result.begin(), result.end());
+        return result;
       }
 
       std::string
@@ -294,83 +274,34 @@ namespace Debond
             "; turn a body in the plane x-z in Gmsh, by Rotate {{1, 0, 0}, {0, 0, 0}, -Pi/2} { Surface{:}; }; one in 3D has cells in 3D, and Dimension = 3");
       }
 
-      unsigned int
-      add_centre(const Corners &corners)
-      {
-        dealii::Point<dim> sum;
-        for (const unsigned int v : corners)
-          sum += vertices[v] / static_cast<double>(corners.size());
-        vertices.push_back(sum);
-        return static_cast<unsigned int>(vertices.size() - 1);
-      }
-
-      /// A face itself, or the triangles that a quadrilateral is cut into.
-      std::vector<Corners>
-      parts(const Corners &face)
-      {
-        if (face.size() == dim)
-          return {face};
-        const auto [centre, is_new] = centres.emplace(key(face), 0);
-        if (is_new)
-          centre->second = add_centre(face);
-        const unsigned int c = centre->second;
-        return {{face[0], face[1], c},
-                {face[1], face[3], c},
-                {face[3], face[2], c},
-                {face[2], face[0], c}};
-      }
-
+      /// Cuts all cells into simplices, with their corners in an order that
+      /// makes their volumes positive.
       void
       cut_cells()
       {
         for (std::size_t c = 0; c < cells.size(); ++c)
-          {
-            const Corners corners = cells[c].corners;
-            if (corners.size() == dim + 1)
-              {
-                add_simplex(corners, c);
-                continue;
-              }
-            const auto kind = dealii::ReferenceCell::n_vertices_to_type(
-              dim, static_cast<unsigned int>(corners.size()));
-            const unsigned int centre = add_centre(corners);
-            for (const unsigned int f : kind.face_indices())
-              {
-                Corners face;
-                for (const unsigned int v :
-                     kind.face_reference_cell(f).vertex_indices())
-                  face.push_back(corners[kind.face_to_cell_vertices(f, v, 1)]);
-                for (Corners part : parts(face))
-                  {
-                    part.push_back(centre);
-                    add_simplex(part, c);
-                  }
-              }
-          }
-      }
-
-      /// With its corners in an order that makes its volume positive.
-      void
-      add_simplex(const Corners &corners, const std::size_t cell)
-      {
-        Simplex                simplex = {{}, cell};
-        dealii::Tensor<2, dim> edges;
-        double                 size = 0.;
-        std::copy(corners.begin(), corners.end(), simplex.corners.begin());
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            edges[d] = vertices[corners[d + 1]] - vertices[corners[0]];
-            size     = std::max(size, edges[d].norm());
-          }
-        const double volume = dealii::determinant(edges / size);
-        if (!(std::abs(volume) > Tolerance::flat_simplex))
-          fail(element(cell) + " is flat" +
-               (corners.size() == cells[cell].corners.size() ?
-                  "" :
-                  ", or its centre does not see all of its faces"));
-        if (volume < 0.)
-          std::swap(simplex.corners[dim - 1], simplex.corners[dim]);
-        simplices.push_back(simplex);
+          for (Corners &corners : crossing.simplices(cells[c].corners))
+            {
+              dealii::Tensor<2, dim> edges;
+              double                 size = 0.;
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  edges[d] = vertices[corners[d + 1]] - vertices[corners[0]];
+                  size     = std::max(size, edges[d].norm());
+                }
+              const double volume = dealii::determinant(edges / size);
+              if (!(std::abs(volume) > Tolerance::flat_simplex))
+                fail(element(c) + " is flat" +
+                     (cells[c].corners.size() == dim + 1 ?
+                        "" :
+                        ", or its centre does not see all of its faces"));
+              if (volume < 0.)
+                std::swap(corners[dim - 1], corners[dim]);
+              simplices.push_back({{}, c});
+              std::copy(corners.begin(),
+                        corners.end(),
+                        simplices.back().corners.begin());
+            }
       }
 
       /// Finds the faces of simplices on the boundary, and neighbours.
@@ -432,11 +363,8 @@ namespace Debond
           {
             if (face.groups.empty())
               continue;
-            const bool           is_quadrilateral = face.corners.size() > dim;
-            std::vector<Corners> pieces           = {face.corners};
-            if (is_quadrilateral && centres.count(key(face.corners)) > 0)
-              pieces = parts(face.corners);
-            const bool is_outside = std::all_of(
+            const std::vector<Corners> pieces = crossing.parts(face.corners);
+            const bool                 is_outside = std::all_of(
               pieces.begin(), pieces.end(), [&](const Corners &piece) {
                 const auto outer =
                   std::lower_bound(outside.begin(),
@@ -450,7 +378,9 @@ namespace Debond
               for (const Corners &piece :
                    is_cut ? pieces : std::vector<Corners>{face.corners})
                 {
-                  Element &outer = outer_faces[key(piece)];
+                  Corners sorted = piece;
+                  std::sort(sorted.begin(), sorted.end());
+                  Element &outer = outer_faces[sorted];
                   outer.corners  = piece;
                   outer.groups.insert(face.groups.begin(), face.groups.end());
                 }
@@ -510,7 +440,7 @@ namespace Debond
       {
         std::set<unsigned int> on_boundary;
         for (const auto &[face, unused] : outside)
-          on_boundary.insert(face.begin(), face.begin() + dim);
+          on_boundary.insert(face.begin(), face.end());
         const Corners candidates(on_boundary.begin(), on_boundary.end());
         std::vector<dealii::Point<dim>> places;
         for (const unsigned int v : candidates)
@@ -583,15 +513,15 @@ namespace Debond
       std::vector<double>             heights;  ///< z
       std::vector<Element>            cells, faces;
 
-      /// By dimension and number of the group.
+      /// The names of groups, by their dimension and number.
       std::map<std::pair<int, int>, std::string> names;
 
-      bool                            is_hypercube = false, is_cut = false;
-      std::vector<Simplex>            simplices;
-      std::map<FaceKey, unsigned int> centres;
+      bool                 is_hypercube = false, is_cut = false;
+      CellCrossing<dim>    crossing{vertices};
+      std::vector<Simplex> simplices;
       std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
       std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
-      std::map<FaceKey, Element> outer_faces; ///< in groups, of the mesh
+      std::map<Corners, Element> outer_faces; ///< in groups, by sorted corners
       std::set<std::string>      inner_groups;
       std::vector<std::string>   notes;
       std::size_t                n_twins = 0;

@@ -6,74 +6,48 @@
 
 namespace Debond
 {
-  namespace
+  template <int dim>
+  std::shared_ptr<Body<dim>>
+  make_body(const BodyParameters &parameters)
   {
-    template <int dim>
-    void
-    rotate(const double degrees, dealii::Triangulation<dim> &mesh)
-    {
-      if (degrees == 0.)
-        return;
-      const auto rotation = rotation_matrix<dim>(degrees);
-      dealii::GridTools::transform(
-        [&rotation](const dealii::Point<dim> &point) {
-          return dealii::Point<dim>(rotation * point);
-        },
-        mesh);
-    }
+    using Source = BodyParameters::Source;
+    if (parameters.source == Source::box)
+      return std::make_shared<Box<dim>>(parameters.box);
 
-
-
-    template <int dim>
-    std::shared_ptr<BodyDescription>
-    make(const BodyParameters &parameters)
-    {
-      switch (parameters.source)
+    // That of a generator is made anew, as manifolds do not survive a copy.
+    std::shared_ptr<const SourceMesh<dim>> file;
+    if (parameters.source == Source::file)
+      file = read_gmsh_mesh<dim>(parameters.file,
+                                 parameters.scale,
+                                 parameters.size,
+                                 parameters.memory);
+    const auto make = [file, parameters](const unsigned int n_refinements) {
+      auto source = std::make_unique<SourceMesh<dim>>();
+      if (file)
         {
-          case BodyParameters::Source::file:
-            {
-              const std::shared_ptr<const SourceMesh<dim>> coarse =
-                read_gmsh_mesh<dim>(parameters.file,
-                                    parameters.scale,
-                                    parameters.size,
-                                    parameters.memory);
-              return std::make_shared<MeshBody<dim>>(
-                [coarse, degrees = parameters.box.rotation](
-                  const unsigned int n_refinements) {
-                  auto source = std::make_unique<SourceMesh<dim>>();
-                  source->mesh.copy_triangulation(coarse->mesh);
-                  source->names        = coarse->names;
-                  source->inner_groups = coarse->inner_groups;
-                  source->refine(n_refinements);
-                  rotate(degrees, source->mesh);
-                  return source;
-                },
-                parameters.n_refinements);
-            }
-          case BodyParameters::Source::generator:
-            // Made anew, as manifolds do not survive a copy.
-            return std::make_shared<MeshBody<dim>>(
-              [name      = parameters.generator,
-               arguments = parameters.arguments,
-               degrees =
-                 parameters.box.rotation](const unsigned int n_refinements) {
-                auto source =
-                  generate_mesh<dim>(name, arguments, n_refinements);
-                rotate(degrees, source->mesh);
-                return source;
-              },
-              parameters.n_refinements);
-          default:
-            return std::make_shared<Box<dim>>(parameters.box);
+          source->mesh.copy_triangulation(file->mesh);
+          source->names        = file->names;
+          source->inner_groups = file->inner_groups;
+          source->refine(n_refinements);
         }
-    }
-  } // namespace
-
-
-
-  std::shared_ptr<BodyDescription>
-  make_body(const unsigned int dimension, const BodyParameters &parameters)
-  {
-    return dimension == 2 ? make<2>(parameters) : make<3>(parameters);
+      else
+        source = generate_mesh<dim>(parameters.generator,
+                                    parameters.arguments,
+                                    n_refinements);
+      if (parameters.box.rotation != 0.)
+        dealii::GridTools::transform(
+          [rotation = rotation_matrix<dim>(parameters.box.rotation)](
+            const dealii::Point<dim> &point) {
+            return dealii::Point<dim>(rotation * point);
+          },
+          source->mesh);
+      return source;
+    };
+    return std::make_shared<MeshBody<dim>>(make, parameters.n_refinements);
   }
+
+
+
+  template decltype(make_body<2>) make_body<2>;
+  template decltype(make_body<3>) make_body<3>;
 } // namespace Debond

@@ -56,9 +56,9 @@ namespace Debond
 
 
 
-    /// Whether a part's edge goes through a face or cell: some of its vertices
-    /// are in the part and others are not. Vertices are asked from a little
-    /// within, since an edge of the part may follow the mesh, as that of
+    /// Returns whether a part's edge goes through a face or cell: some of its
+    /// vertices are in the part and others are not. Vertices are asked from a
+    /// little within, since an edge of the part may follow the mesh, as that of
     /// "y < 1e-6" does.
     template <int dim, typename Iterator>
     bool
@@ -75,7 +75,7 @@ namespace Debond
 
 
 
-    /// Where a body lies, for messages.
+    /// The place of a body, for messages.
     template <int dim>
     std::string
     extent_of(const dealii::Triangulation<dim> &mesh)

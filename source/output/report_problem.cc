@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/bounding_box.h>
+
 #include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/output/report.h>
@@ -139,14 +141,21 @@ namespace Debond
                 {"linear_solver", choice.linear_solver}});
     if (record.has_details())
       record.line("scene", problem.scene);
-    const auto lengths = problem.body->extents();
+    const dealii::BoundingBox<dim> box(scene.problem()
+                                         .unknowns()
+                                         .dof_handler()
+                                         .get_triangulation()
+                                         .get_vertices());
+    std::string                    size;
+    for (unsigned int d = 0; d < dim; ++d)
+      size +=
+        words(d == 0 ? ", " : " x ",
+              dealii::Utilities::MPI::max(box.upper_bound(d), scene.ranks()) -
+                dealii::Utilities::MPI::min(box.lower_bound(d), scene.ranks()));
     record.line("mesh",
                 scene.n_cells(),
-                dim == 2 ? " triangles, " : " tetrahedra, ",
-                lengths[0],
-                " x ",
-                lengths[1],
-                dim == 2 ? "" : words(" x ", lengths[2]),
+                dim == 2 ? " triangles" : " tetrahedra",
+                size,
                 problem.degree == 2 ? ", quadratic displacements" : "");
     record.line("unknowns",
                 n_dofs,

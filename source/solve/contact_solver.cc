@@ -327,8 +327,7 @@ namespace Debond
             "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
             (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
         start_from({},
-                   interpolate_displacement(coarse_scene.body(),
-                                            coarse_scene.problem(),
+                   interpolate_displacement(coarse_scene.problem(),
                                             start.u,
                                             problem));
       }

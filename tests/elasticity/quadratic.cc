@@ -42,7 +42,7 @@ make_mesh(Triangulation<dim> &mesh)
   GridGenerator::subdivided_hyper_rectangle(
     cells, n, Point<dim>(), corner, true);
   GridTools::distort_random(0.2, cells, true, 3);
-  crossed_subdivision(cells, mesh);
+  crossed_subdivision(cells).make_mesh(mesh);
 }
 
 

@@ -50,7 +50,7 @@ read(const std::string &text,
   parameters.file   = write(text, name);
   parameters.size   = size;
   parameters.memory = memory;
-  return std::dynamic_pointer_cast<const Body<dim>>(make_body(dim, parameters));
+  return make_body<dim>(parameters);
 }
 
 
@@ -373,8 +373,7 @@ test_geometry()
   const auto n_on   = [&](const double size, const std::string &name) {
     parameters.size = size;
     Triangulation<2> mesh;
-    const auto       body =
-      std::dynamic_pointer_cast<const Body<2>>(make_body(2, parameters));
+    const auto       body  = make_body<2>(parameters);
     const PieceNames names = body->make_mesh(mesh);
     check("  the area", std::abs(measure_of(mesh) - 200.) < 1e-9);
     unsigned int n = 0;
@@ -401,15 +400,15 @@ test_geometry()
             "3 of 6 faces of the group bottom lie inside the body or away from "
             "it, and are left out\n");
   parameters.size = 0.;
-  print_error([&] { make_body(3, parameters); });
+  print_error([&] { make_body<3>(parameters); });
   std::ofstream("test.geo") << "SetFactory(\"OpenCASCADE\");\n"
                                "Box(1) = {0, 0, 0, 1, 1, 1};\n";
-  print_error([&] { make_body(2, parameters); });
+  print_error([&] { make_body<2>(parameters); });
   std::ofstream("test.geo") << "Point(1) = {0, 0,\n";
-  print_error([&] { make_body(2, parameters); });
+  print_error([&] { make_body<2>(parameters); });
   parameters.file = write(square);
   parameters.size = 1.;
-  print_error([&] { make_body(2, parameters); });
+  print_error([&] { make_body<2>(parameters); });
   check("locale and environment are as they were",
         std::setlocale(LC_ALL, nullptr) == std::string("C.UTF-8") &&
           std::getenv("PATH") == path);

@@ -88,11 +88,9 @@ namespace
       u(i) = coarse.problem->unknowns().is_constrained(i) ?
                0. :
                std::sin(1. + i * i);
-    const DofVector v      = interpolate_displacement(Box<dim>(coarse_box),
-                                                 *coarse.problem,
-                                                 u,
-                                                 *fine.problem);
-    const double    energy = coarse.problem->matrix().matrix_norm_square(u);
+    const DofVector v =
+      interpolate_displacement(*coarse.problem, u, *fine.problem);
+    const double energy = coarse.problem->matrix().matrix_norm_square(u);
     check("  difference of the energies",
           std::abs(fine.problem->matrix().matrix_norm_square(v) / energy - 1.),
           1e-12);
@@ -101,11 +99,9 @@ namespace
             (coarse.problem->load().l2_norm() * u.l2_norm()),
           1e-11);
 
-    const DofVector back       = interpolate_displacement(Box<dim>(fine_box),
-                                                    *fine.problem,
-                                                    v,
-                                                    *coarse.problem);
-    DofVector       difference = back;
+    const DofVector back =
+      interpolate_displacement(*fine.problem, v, *coarse.problem);
+    DofVector difference = back;
     difference -= u;
     check("  difference at the vertices of both",
           difference.linfty_norm() / u.linfty_norm(),

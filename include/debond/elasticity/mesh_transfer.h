@@ -4,7 +4,6 @@
 
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/body.h>
 
 #include <vector>
 
@@ -23,20 +22,15 @@ namespace Debond
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target);
 
-  /**
-   * The P1 displacement u of a problem on the mesh of @p body, whole on each
-   * rank, at the nodes of another mesh of the same body: a vector of unknowns
-   * of
-   * @p target, whose supports and frames may be others. On a mesh whose cells
-   * divide those of @p body the displacement is reproduced exactly (their P1
-   * spaces are nested) but for the same.
-   *
-   * @p body must be the one that made the source's triangulation.
-   */
+  /// The P1 displacement u of a problem on another mesh of the same body, whole
+  /// on each rank, at the nodes of @p target: a vector of its unknowns, whose
+  /// supports and frames may be others. On a mesh whose cells divide those of
+  /// the source the displacement is reproduced exactly (their P1 spaces are
+  /// nested) but for the same. Points beside the source's mesh, as on the
+  /// curved side of a finer one, belong to a cell next to them.
   template <int dim>
   DofVector
-  interpolate_displacement(const Body<dim>           &body,
-                           const ElasticProblem<dim> &source,
+  interpolate_displacement(const ElasticProblem<dim> &source,
                            const DofVector           &u,
                            const ElasticProblem<dim> &target);
 } // namespace Debond

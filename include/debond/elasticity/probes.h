@@ -32,7 +32,7 @@ namespace Debond
 
 
 
-  /// Cartesian vectors, by the names of the probes.
+  /// The values are Cartesian vectors, by the names of the probes.
   template <int dim>
   using ProbeValues =
     std::vector<std::pair<std::string, dealii::Tensor<1, dim>>>;
@@ -50,9 +50,9 @@ namespace Debond
   public:
     Probes() = default;
 
-    /// @p pieces: of the mesh of @p unknowns. Throws EntryError, or
-    /// std::out_of_range if there is no such piece. To be called by all ranks,
-    /// and so is values().
+    /// The @p pieces are those of the mesh of @p unknowns. Throws EntryError,
+    /// or std::out_of_range if there is no such piece. To be called by all
+    /// ranks, and so is values().
     Probes(const ElasticUnknowns<dim>    &unknowns,
            const PieceNames              &pieces,
            const std::vector<Probe<dim>> &probes);

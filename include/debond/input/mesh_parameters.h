@@ -3,7 +3,6 @@
 #define debond_input_mesh_parameters_h
 
 #include <debond/base/parameter_table.h>
-#include <debond/mesh/body.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>
@@ -16,36 +15,20 @@ namespace Debond
   void
   bind_mesh(BodyParameters &body, ParameterTable &table);
 
-  /// The body, a Body<dimension>, of the file @p scene. Adds an error to the
-  /// table and returns null if there is none.
-  std::shared_ptr<BodyDescription>
-  make_body(const std::string &scene,
-            const unsigned int dimension,
-            BodyParameters     body,
-            ParameterTable    &table);
-
-
-
-  /// Cuts the @p body, a Body<dimension>, as Mesh/Cuts says. Conditions may use
-  /// the @p constants. Texts that make no cut are left in the table as errors.
-  void
-  add_cuts(BodyDescription                     &body,
-           const BodyParameters                &parameters,
-           const unsigned int                   dimension,
-           const std::map<std::string, double> &constants,
-           ParameterTable                      &table);
-
   /// The section Parts: the texts "BOUNDARY: CONDITION" or "CONDITION" by the
   /// names of the parts.
   void
   bind_parts(std::map<std::string, std::string> &parts, ParameterTable &table);
 
-  /// Gives the @p body, a Body<dimension>, these parts. Conditions may use the
-  /// @p constants. Texts that make no part are left in the table as errors.
-  void
-  add_parts(BodyDescription                          &body,
-            const std::map<std::string, std::string> &parts,
+  /// The body, a Body<dimension>, of the file @p scene with its cuts and these
+  /// @p parts, whose conditions may use the @p constants. Null with an error in
+  /// the table if there is none; texts that make no cut or part are left there
+  /// as errors.
+  std::shared_ptr<BodyDescription>
+  make_body(const std::string                        &scene,
             const unsigned int                        dimension,
+            BodyParameters                            parameters,
+            const std::map<std::string, std::string> &parts,
             const std::map<std::string, double>      &constants,
             ParameterTable                           &table);
 } // namespace Debond

@@ -37,18 +37,6 @@ namespace Debond
       return bisection.ancestors();
     }
 
-    std::set<std::string>
-    whole_boundaries() const override
-    {
-      return whole->boundaries();
-    }
-
-    std::set<std::string>
-    whole_regions() const override
-    {
-      return whole->regions();
-    }
-
     double
     n_cells() const override
     {
@@ -56,16 +44,22 @@ namespace Debond
     }
 
     double
-    n_vertices() const override;
-
-    std::array<double, 3>
-    extents() const override
+    n_vertices() const override
     {
-      return whole->extents();
+      return static_cast<double>(bisection.vertices().size());
     }
 
     PieceNames
-    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
+    whole_names() const override
+    {
+      return names;
+    }
+
+    void
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override
+    {
+      bisection.make_mesh(mesh);
+    }
 
     /// None: a solution goes from mesh to mesh by ancestors().
     std::unique_ptr<Body<dim>>

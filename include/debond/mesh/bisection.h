@@ -52,7 +52,10 @@ namespace Debond
     refine(const std::vector<unsigned int> &times);
 
     unsigned int
-    n_cells() const;
+    n_cells() const
+    {
+      return static_cast<unsigned int>(cells.size());
+    }
 
     /// Returns the vertices. Those before a refinement keep their numbers.
     const std::vector<dealii::Point<dim>> &
@@ -83,9 +86,12 @@ namespace Debond
       /// internal_face_boundary_id of those inside.
       std::array<dealii::types::boundary_id, dim + 1> boundaries;
       dealii::types::material_id                      material;
+
+      unsigned int cuts_left = 0; ///< during refine()
+      unsigned int whole     = 0; ///< the cell before it
     };
 
-    /// With one number for vertices at one place.
+    /// The numbers with one for all vertices at one place.
     template <std::size_t n>
     std::array<unsigned int, n>
     joined(std::array<unsigned int, n> numbers) const

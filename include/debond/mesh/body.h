@@ -20,8 +20,8 @@
 
 namespace Debond
 {
-  /// The faces and the cells of a mesh that have a name, by their ids. All ids
-  /// occur in the mesh.
+  /// The ids that the faces (the cells) with a name have. All of them occur in
+  /// the mesh.
   using BoundaryNames =
     std::map<std::string, std::set<dealii::types::boundary_id>>;
   using RegionNames =
@@ -32,7 +32,7 @@ namespace Debond
   constexpr double most_coarsest_vertices = 5000.;
 
   /// Levels below are not worth a smoother.
-  constexpr double fewest_vertices_of_level = 400.;
+  constexpr double fewest_vertices_of_level = 350.;
 
 
 
@@ -42,8 +42,8 @@ namespace Debond
   boundary_name(const BoundaryNames             &names,
                 const dealii::types::boundary_id id);
 
-  /// All outer faces, with names or without, unless a body has a boundary of
-  /// this name.
+  /// The name of all outer faces, with names or without, unless a body has a
+  /// boundary of this name.
   constexpr const char *whole_boundary = "boundary";
 
   /// A piece of a boundary, or of the body, with a name of its own: the faces
@@ -74,25 +74,22 @@ namespace Debond
     std::string low = "", high = "";
   };
 
+  /// The pieces of a mesh that have names.
   struct PieceNames
   {
     BoundaryNames boundaries;
     RegionNames   regions;
 
-    /// Boundaries NAME that are the two sides NAME_low and NAME_high of a cut.
+    /// The boundaries NAME that are both sides NAME_low and NAME_high of a cut.
     std::set<std::string> interfaces = {};
 
-    /// The notes on the pieces for the user.
+    /// Notes on the pieces for the user.
     std::vector<std::string> notes = {};
   };
 
 
 
-  /**
-   * What is known of a body without building its mesh, in either dimension.
-   * Numbers of cells and vertices are double, as what a user writes may exceed
-   * an integer.
-   */
+  /// A body of either dimension, before its mesh is made.
   class BodyDescription
   {
   public:
@@ -109,30 +106,17 @@ namespace Debond
     virtual std::set<std::string>
     regions() const = 0;
 
-    /// Triangles or tetrahedra.
-    virtual double
-    n_cells() const = 0;
-
+    /// About how many vertices the mesh has: what a user asks for may exceed
+    /// an integer.
     virtual double
     n_vertices() const = 0;
-
-    /// Returns the extents of a box around the body, along its edges.
-    virtual std::array<double, 3>
-    extents() const = 0;
-
-    /// Returns whether Body::coarse_levels() has any.
-    virtual bool
-    has_coarse_levels() const
-    {
-      return false;
-    }
   };
 
 
 
-  /// The vertices of a mesh and its P1 fields: at a point of the body they are
-  /// means of the values at these vertices, with these weights. Beside the mesh
-  /// weights may be negative.
+  /// The vertices of a mesh and its P1 fields. At a point of the body a field
+  /// is the mean of its values at some vertices, with weights that may be
+  /// negative beside the mesh.
   template <int dim>
   struct LinearFields
   {
@@ -153,18 +137,17 @@ namespace Debond
 
 
 
-  /// A body: its mesh, coarser meshes of the same body and the way between
-  /// them.
+  /// A body makes its mesh, and coarser meshes of the same body with the way
+  /// between them.
   template <int dim>
   class Body : public BodyDescription
   {
   public:
-    /// The parts that have names beside those of the whole body's boundaries
-    /// and regions.
+    /// These have names beside those of the whole body's boundaries and
+    /// regions.
     std::vector<Part<dim>> parts;
 
-    /// The cuts that make several bodies of this one. There are no coarser
-    /// meshes then.
+    /// The body is cut into several here. There are no coarser meshes then.
     std::vector<Cut<dim>> cuts;
 
     std::set<std::string>
@@ -173,29 +156,37 @@ namespace Debond
     std::set<std::string>
     regions() const final;
 
-    /// Fills an empty triangulation and says which ids the boundaries() and
-    /// regions() have. Throws std::invalid_argument if the body is none,
+    /// The number of triangles or tetrahedra.
+    virtual double
+    n_cells() const = 0;
+
+    /// The number that a large crossed mesh with so many cells has.
+    double
+    n_vertices() const override
+    {
+      return (dim == 2 ? 1. / 2. : 5. / 24.) * n_cells();
+    }
+
+    /// Fills an empty triangulation and returns the ids that the boundaries()
+    /// and regions() have. Throws std::invalid_argument if the body is none,
     /// EntryError if a part has no face or cell.
     PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const;
 
-    /// Returns this body with about half as many cells in each direction, null
-    /// if there is none in which each part has a face (a cell).
+    /// Returns the same body with about half as many cells in each direction,
+    /// null if there is none in which each part has a face (a cell).
     std::unique_ptr<Body>
     coarser() const;
-
-    /// The P1 field with @p values at the vertices of @p mesh, which is the one
-    /// of make_mesh(), at points of the body. Points beside the mesh, as on the
-    /// curved side of a finer one, belong to a cell next to them.
-    std::vector<dealii::Tensor<1, dim>>
-    interpolate(const dealii::Triangulation<dim>          &mesh,
-                const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>>     &points) const;
 
     /// The body of the next coarser level for multigrid, without parts; null if
     /// this one takes nothing to solve, or if there is none.
     virtual std::unique_ptr<Body>
     coarser_level() const;
+
+    /// Returns whether there are coarser levels, down to one that takes little
+    /// to factorise.
+    bool
+    has_coarse_levels() const;
 
     /// The meshes of the coarser levels, finest first; empty unless
     /// has_coarse_levels(). If @p with_own the body's own mesh comes first,
@@ -207,20 +198,20 @@ namespace Debond
                   const bool with_own = false) const;
 
   private:
-    /// Returns the names of the body's boundaries without those of its parts.
-    virtual std::set<std::string>
-    whole_boundaries() const = 0;
-
-    virtual std::set<std::string>
-    whole_regions() const = 0;
-
+    /// The pieces of the body without its parts and cuts.
     virtual PieceNames
+    whole_names() const = 0;
+
+    /// Fills @p mesh with that of this body, which has the whole_names().
+    virtual void
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const = 0;
 
+    /// The body without parts with about half as many cells in each direction,
+    /// or null.
     virtual std::unique_ptr<Body>
     coarser_whole() const = 0;
 
-    /// Returns the linear fields of a mesh that is as good as the one of
+    /// The P1 fields of a mesh that is as good as the one of
     /// make_whole_mesh(), with vertices in another order.
     virtual LinearFields<dim>
     linear_fields() const;

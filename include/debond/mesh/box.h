@@ -17,39 +17,35 @@ namespace Debond
 
 
 
-  /**
-   * The sides of the (unturned) box by name: left and right are the smallest
-   * and largest x, bottom and top y, back and front z (3D only).
-   */
+  /// The sides of the (unturned) box by name: left and right are the smallest
+  /// and largest x, bottom and top y, back and front z (3D only).
   template <int dim>
-  const std::map<std::string, dealii::types::boundary_id> &
+  std::map<std::string, dealii::types::boundary_id>
   box_sides();
 
-  template <int dim>
-  BoundaryNames
-  box_boundaries();
-
-  /// By an angle in degrees in the x-y plane.
+  /// The rotation by an angle in degrees in the x-y plane.
   template <int dim>
   dealii::Tensor<2, dim>
   rotation_matrix(const double degrees);
 
-  /// The crossed mesh of a box with the boundary ids of box_sides(). Throws
-  /// std::invalid_argument if a length is not positive or there are no cells in
-  /// a direction.
+  /// The crossed mesh of a part of a box, of the cells from @p begin on, so
+  /// many in each direction; simplices and vertices are to the last bit those
+  /// of the whole. The faces around the part have the boundary ids that the
+  /// sides of a box have. Throws std::invalid_argument if a length is not
+  /// positive or there are no cells in a direction.
   template <int dim>
-  void
-  make_box(const BoxParameters        &parameters,
-           dealii::Triangulation<dim> &crossed);
-
-  /// Returns the simplices that the cells of this mesh from @p begin on have,
-  /// so many in each direction: see crossed_cells(). The boundary ids are those
-  /// of box_sides(), also where the part ends inside of the box.
-  template <int dim>
-  CellsAndVertices<dim>
+  MeshData<dim>
   part_of_box(const BoxParameters               &box,
               const std::array<unsigned int, 3> &begin,
               const std::array<unsigned int, 3> &n_cells);
+
+  /// The crossed mesh of all of it.
+  template <int dim>
+  void
+  make_box(const BoxParameters &box, dealii::Triangulation<dim> &mesh)
+  {
+    part_of_box<dim>(box, {}, box.cells).make_mesh(mesh);
+  }
 
 
 
@@ -62,33 +58,27 @@ namespace Debond
       : parameters(parameters)
     {}
 
-    std::set<std::string>
-    whole_boundaries() const override;
-
-    /// None.
-    std::set<std::string>
-    whole_regions() const override
-    {
-      return {};
-    }
-
     double
-    n_cells() const override;
-
-    double
-    n_vertices() const override;
-
-    std::array<double, 3>
-    extents() const override
+    n_cells() const override
     {
-      return parameters.lengths;
+      const auto &n = parameters.cells;
+      return dim == 2 ? 4. * n[0] * n[1] : 24. * n[0] * n[1] * n[2];
     }
-
-    bool
-    has_coarse_levels() const override;
 
     PieceNames
-    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
+    whole_names() const override
+    {
+      PieceNames names;
+      for (const auto &[side, id] : box_sides<dim>())
+        names.boundaries[side] = {id};
+      return names;
+    }
+
+    void
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override
+    {
+      make_box(parameters, mesh);
+    }
 
     /// Half as many cells in the directions in which they are shortest: those
     /// of stretched cells get rounder first. Odd numbers are rounded up: a box
@@ -99,7 +89,7 @@ namespace Debond
     LinearFields<dim>
     linear_fields() const override;
 
-    /// Not where its cells would be longer than those of this one.
+    /// Null also where its cells would be longer than those of this one.
     std::unique_ptr<Body<dim>>
     coarser_level() const override;
 

@@ -2,17 +2,54 @@
 #ifndef debond_mesh_crossed_mesh_h
 #define debond_mesh_crossed_mesh_h
 
-#include <deal.II/grid/tria.h>
+#include <debond/mesh/mesh_data.h>
 
+#include <array>
+#include <map>
 #include <vector>
 
 namespace Debond
 {
+  /// Cuts the cells of a mesh into simplices that are spanned by the centre of
+  /// a cell and its faces, of which quadrilaterals are cut into triangles by
+  /// their own centre. Centres are means of the corners, which are given as
+  /// numbers of vertices in deal.II's order.
+  template <int dim>
+  class CellCrossing
+  {
+  public:
+    using Corners = std::vector<unsigned int>;
+
+    /// The centres are appended to the @p vertices.
+    explicit CellCrossing(std::vector<dealii::Point<dim>> &vertices)
+      : vertices(vertices)
+    {}
+
+    /// The simplices of a cell, face by face, with their vertices on that face
+    /// first, or the cell itself if it is one. Those of a quadrilateral or
+    /// hexahedron have a positive volume if its centre sees all of its faces.
+    std::vector<Corners>
+    simplices(const Corners &cell);
+
+    /// The triangles that a quadrilateral is cut into, or the face itself.
+    std::vector<Corners>
+    parts(const Corners &face);
+
+  private:
+    unsigned int
+    add_centre(const Corners &corners);
+
+    std::vector<dealii::Point<dim>>                    &vertices;
+    std::map<std::array<unsigned int, 4>, unsigned int> centres; ///< of faces
+  };
+
+
+
   /**
    * The crossed subdivision. In 2D each quadrilateral is cut along both
    * diagonals into 4 triangles that meet in its centre (paper's Fig. 3), in
    * 3D each hexahedron into 24 tetrahedra spanned by its centre, the centre of
-   * a face and an edge of that face. Centres are means of the corners.
+   * a face and an edge of that face.
    *
    * The material ids of cells and the boundary ids of faces are kept, manifolds
    * are not: a curved boundary is sampled at the vertices, and all faces are
@@ -20,35 +57,11 @@ namespace Debond
    *
    * @p coarse must be a mesh of quadrilaterals (hexahedra) without hanging
    * nodes, all active cells on one level, and each cell's centre must see all
-   * of its faces; @p crossed must be empty. Throws std::invalid_argument
-   * otherwise.
+   * of its faces. Throws std::invalid_argument otherwise.
    */
   template <int dim>
-  void
-  crossed_subdivision(const dealii::Triangulation<dim> &coarse,
-                      dealii::Triangulation<dim>       &crossed);
-
-  /// The arguments of dealii::Triangulation::create_triangulation().
-  template <int dim>
-  struct CellsAndVertices
-  {
-    std::vector<dealii::Point<dim>>    vertices;
-    std::vector<dealii::CellData<dim>> cells;
-    dealii::SubCellData                faces;
-  };
-
-  /// Returns some cells of a crossed mesh, in this order: simplices and
-  /// vertices are to the last bit and in the order in which the whole has them,
-  /// but for those that are not there. The 4 (24) simplices of a coarse cell
-  /// follow each other, face by face, and have their vertices on that face
-  /// first. Faces inside of the body at which the cells end get the id @p
-  /// id_of_cuts.
-  template <int dim>
-  CellsAndVertices<dim>
-  crossed_cells(
-    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
-                                    &coarse_cells,
-    const dealii::types::boundary_id id_of_cuts);
+  MeshData<dim>
+  crossed_subdivision(const dealii::Triangulation<dim> &coarse);
 } // namespace Debond
 
 #endif

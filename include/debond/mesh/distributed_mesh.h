@@ -36,7 +36,7 @@ namespace Debond
    * other bodies, and of boxes that have Body::parts, is made by the first rank
    * alone and partitioned by METIS.
    *
-   * What make_mesh() throws is thrown as on_all_ranks() does. Throws
+   * Exceptions of make_mesh() are thrown as on_all_ranks() does. Throws
    * std::invalid_argument on all ranks if there are more of them than cells.
    */
   template <int dim>

@@ -30,10 +30,11 @@ namespace Debond
     std::string   cuts;              ///< "y = 2, core | ring"
   };
 
-  /// A Body<dimension>. Throws std::invalid_argument if there is no such
-  /// function or file, or no body in it.
-  std::shared_ptr<BodyDescription>
-  make_body(const unsigned int dimension, const BodyParameters &parameters);
+  /// The body that the parameters describe. Throws std::invalid_argument if
+  /// there is no such function or file, or no body in it.
+  template <int dim>
+  std::shared_ptr<Body<dim>>
+  make_body(const BodyParameters &parameters);
 } // namespace Debond
 
 #endif

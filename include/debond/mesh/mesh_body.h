@@ -22,27 +22,16 @@ namespace Debond
     /// Throws what @p make throws.
     MeshBody(const Source &make, const unsigned int n_refinements);
 
-    std::set<std::string>
-    whole_boundaries() const override;
-
-    std::set<std::string>
-    whole_regions() const override;
-
     double
     n_cells() const override;
 
-    double
-    n_vertices() const override;
-
-    std::array<double, 3>
-    extents() const override;
-
-    /// If quadrilaterals or hexahedra are halved, from a mesh that is coarse
-    /// enough.
-    bool
-    has_coarse_levels() const override;
-
     PieceNames
+    whole_names() const override
+    {
+      return source->names;
+    }
+
+    void
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     /// The one with a refinement less.
@@ -50,29 +39,11 @@ namespace Debond
     coarser_whole() const override;
 
   private:
-    const Source       make;
-    const unsigned int n_refinements;
+    Source       make;
+    unsigned int n_refinements;
 
-    bool is_simplicial = false;
-
-    /// Returns the number of vertices of the crossed mesh.
-    double
-    n_vertices_of_level(const unsigned int level) const;
-
-    /// Corners, edges, faces (of hexahedra) and cells of a part of the mesh.
-    struct Counts
-    {
-      double corners = 0., edges = 0., squares = 0., cubes = 0.;
-
-      /// After all of it is halved.
-      Counts
-      halved(const unsigned int times) const;
-    };
-
-    Counts all; ///< of the mesh before it is halved
-
-    /// Before it is halved: all that there is beforehand.
-    std::unique_ptr<const SourceMesh<dim>> source;
+    /// Before it is halved.
+    std::shared_ptr<const SourceMesh<dim>> source;
   };
 } // namespace Debond
 

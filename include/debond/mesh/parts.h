@@ -7,9 +7,9 @@
 namespace Debond
 {
   /// Gives the faces and cells of @p mesh that are in parts ids of their own.
-  /// Returns the @p names with those of the
-  /// parts, and notes on parts whose edge cuts faces or cells. Throws
-  /// EntryError if a part has no face (no cell).
+  /// Returns the @p names with those of the parts, and notes on parts whose
+  /// edge cuts faces or cells. Throws EntryError if a part has no face (no
+  /// cell).
   template <int dim>
   PieceNames
   name_parts(const std::vector<Part<dim>> &parts,

@@ -27,8 +27,8 @@ namespace Debond
    * The mesh of a Gmsh file, see read_gmsh_file(), with its lengths multiplied
    * by @p scale. In 2D z must be the same everywhere. Physical groups of faces
    * are boundaries, those of cells regions, by their names or, without one, by
-   * their numbers. What groups have inside or away from the body belongs to no
-   * boundary.
+   * their numbers. Faces that groups have inside or away from the body belong
+   * to no boundary.
    *
    * Throws std::invalid_argument with file and line if the mesh has cells of
    * several kinds or none, if a cell is flat or so distorted that its centre
@@ -44,10 +44,9 @@ namespace Debond
                  const double       memory);
 
   /**
-   * What deal.II's GridGenerator::generate_from_name_and_arguments() makes,
-   * refined.
-   * The names of boundaries and regions are their numbers. Throws
-   * std::invalid_argument with deal.II's words if it makes no mesh.
+   * The mesh that deal.II's GridGenerator::generate_from_name_and_arguments()
+   * makes, refined. The names of boundaries and regions are their numbers.
+   * Throws std::invalid_argument with deal.II's words if it makes no mesh.
    */
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
+#include <debond/mesh/cell_search.h>
+#include <debond/mesh/owned_cells.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace Debond
+{
+  template <int dim>
+  std::array<double, dim + 1>
+  barycentric_coordinates(
+    const std::array<dealii::Point<dim>, dim + 1> &vertices,
+    const dealii::Point<dim>                      &point)
+  {
+    dealii::Tensor<2, dim> edges; // as columns
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int c = 0; c < dim; ++c)
+        edges[c][d] = vertices[d + 1][c] - vertices[0][c];
+    const dealii::Tensor<1, dim> xi =
+      dealii::invert(edges) * (point - vertices[0]);
+    std::array<double, dim + 1> coordinates = {{1.}};
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        coordinates[0] -= xi[d];
+        coordinates[d + 1] = xi[d];
+      }
+    return coordinates;
+  }
+
+
+
+  namespace
+  {
+    /// Boxes around the cells, and around points that are beside them by
+    /// rounding.
+    template <int dim>
+    std::vector<dealii::BoundingBox<dim>>
+    boxes_of_cells(const dealii::Triangulation<dim> &mesh)
+    {
+      std::vector<dealii::BoundingBox<dim>> boxes;
+      for (const auto &cell : owned_cells(mesh))
+        {
+          boxes.push_back(cell->bounding_box());
+          boxes.back().extend(Tolerance::point_in_body * cell->diameter());
+        }
+      return boxes;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  CellSearch<dim>::CellSearch(const dealii::Triangulation<dim> &mesh)
+    : boxes(boxes_of_cells(mesh))
+    , tree(dealii::pack_rtree_of_indices(boxes))
+  {
+    for (const auto &cell : owned_cells(mesh))
+      cells.push_back(cell);
+  }
+
+
+
+  template <int dim>
+  typename CellSearch<dim>::Place
+  CellSearch<dim>::operator()(const dealii::Point<dim> &point) const
+  {
+    namespace index          = boost::geometry::index;
+    constexpr double nowhere = -std::numeric_limits<double>::max();
+    Place            best    = {{}, {}, nowhere};
+    const auto       look_at = [&](const std::size_t candidate) {
+      std::array<dealii::Point<dim>, dim + 1> vertices;
+      for (unsigned int v = 0; v <= dim; ++v)
+        vertices[v] = cells[candidate]->vertex(v);
+      const auto   coordinates = barycentric_coordinates<dim>(vertices, point);
+      const double depth =
+        *std::min_element(coordinates.begin(), coordinates.end());
+      if (depth > best.depth)
+        best = {cells[candidate], coordinates, depth};
+    };
+    // Any cell that the point is inside of will do.
+    for (auto found = tree.qbegin(index::intersects(point));
+         found != tree.qend() && best.depth < -Tolerance::same_cell;
+         ++found)
+      look_at(*found);
+    if (best.depth == nowhere)
+      for (auto found = tree.qbegin(index::nearest(point, 1));
+           found != tree.qend();
+           ++found)
+        look_at(*found);
+    return best;
+  }
+
+
+
+  template decltype(barycentric_coordinates<2>) barycentric_coordinates<2>;
+  template decltype(barycentric_coordinates<3>) barycentric_coordinates<3>;
+  template class CellSearch<2>;
+  template class CellSearch<3>;
+} // namespace Debond
