@@ -219,16 +219,17 @@ namespace Debond
 
   template <int dim>
   std::vector<OutputFile>
-  LoadPathOutput<dim>::files()
+  LoadPathOutput<dim>::files(const std::vector<LoadPathStep<dim>> &steps,
+                             const std::vector<LoadPathStep<dim>> &arc) const
   {
     return {{"load_path_arc.csv",
-             [this]() { return !arc.empty(); },
-             [this](const std::string &file) { write_load_path(arc, file); }},
+             [&arc]() { return !arc.empty(); },
+             [&arc](const std::string &file) { write_load_path(arc, file); }},
             series_file("load_path_body.pvd", bodies),
             series_file("load_path_contact.pvd", contacts),
             {"load_path.csv",
-             [this]() { return !steps.empty(); },
-             [this](const std::string &file) {
+             [&steps]() { return !steps.empty(); },
+             [this, &steps](const std::string &file) {
                write_load_path(steps, file);
                if (!error.empty())
                  throw std::runtime_error(error);

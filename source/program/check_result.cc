@@ -13,33 +13,34 @@
 
 namespace Debond
 {
-  template <int dim>
-  std::optional<DisplacementError>
-  error_of(const std::string &exact_displacement,
-           const Scene<dim>  &scene,
-           const DofVector   &u)
-  {
-    if (exact_displacement.empty())
-      return {};
-    try
-      {
-        return displacement_error(
-          scene.problem(),
-          u,
-          *make_function<dim>(exact_displacement,
-                              scene.parameters().loads.constants));
-      }
-    catch (const std::invalid_argument &error)
-      {
-        throw BadInput({scene.parameters().scene +
-                        ": Verification/Exact displacement: " + error.what()});
-      }
-  }
-
-
-
   namespace
   {
+    template <int dim>
+    std::optional<DisplacementError>
+    error_of(const std::string &exact_displacement,
+             const Scene<dim>  &scene,
+             const DofVector   &u)
+    {
+      if (exact_displacement.empty())
+        return {};
+      try
+        {
+          return displacement_error(
+            scene.problem(),
+            u,
+            *make_function<dim>(exact_displacement,
+                                scene.parameters().loads.constants));
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw BadInput(
+            {scene.parameters().scene +
+             ": Verification/Exact displacement: " + error.what()});
+        }
+    }
+
+
+
     /// Returns what the verification has against the result, or against the
     /// first step of a load path that it has something against; empty if
     /// nothing.
@@ -234,15 +235,12 @@ namespace Debond
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
-    // Only the path knows which pieces bonds have left for good, and it has
-    // verified its states itself.
-    if (result.path.empty())
-      result.verification = verify(scene.problem(),
-                                   scene.adhesion(),
-                                   scene.law(),
-                                   result.solve.u,
-                                   result.solve.load_factor);
-    const auto values = [&](const Probes<dim> &probes) {
+    result.verification = verify(scene.problem(),
+                                 bonds,
+                                 scene.law(),
+                                 result.solve.u,
+                                 result.solve.load_factor);
+    const auto values   = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solve.u,
                            result.solve.load_factor);
@@ -286,8 +284,20 @@ namespace Debond
 
 
 
-  template decltype(error_of<2>)     error_of<2>;
-  template decltype(error_of<3>)     error_of<3>;
-  template decltype(check_result<2>) check_result<2>;
-  template decltype(check_result<3>) check_result<3>;
+  template <int dim>
+  void
+  check_exact_displacement(const std::string &exact_displacement,
+                           const Scene<dim>  &scene)
+  {
+    error_of(exact_displacement,
+             scene,
+             DofVector(scene.problem().unknowns().n_dofs()));
+  }
+
+
+
+  template decltype(check_exact_displacement<2>) check_exact_displacement<2>;
+  template decltype(check_exact_displacement<3>) check_exact_displacement<3>;
+  template decltype(check_result<2>)             check_result<2>;
+  template decltype(check_result<3>)             check_result<3>;
 } // namespace Debond

@@ -1,472 +1,259 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/append.h>
-#include <debond/base/atomic_file.h>
-#include <debond/base/directory_lock.h>
 #include <debond/base/memory.h>
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
-#include <debond/certify/certification.h>
 #include <debond/input/bad_input.h>
-#include <debond/output/load_path_output.h>
-#include <debond/output/output_files.h>
-#include <debond/output/record.h>
 #include <debond/output/report.h>
-#include <debond/output/run_result.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
-#include <debond/program/run_state.h>
+#include <debond/program/run_output.h>
 #include <debond/solve/displacement.h>
-#include <debond/solve/load_path.h>
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 
 namespace Debond
 {
   namespace
   {
-    std::string
-    output_path(const std::string &directory, const std::string &name)
+    /// What a run has found and on which mesh, or before the end what it goes
+    /// on from. The state has the meshes that are done, why the last one is
+    /// short of its target, and what a later run would go on from.
+    template <int dim>
+    struct Answer
     {
-      return (std::filesystem::path(directory) / name).string();
+      std::shared_ptr<const Scene<dim>> scene;
+      FollowedPath<dim>                 path; ///< one load: without steps
+      RunState<dim>                     state;
+    };
+
+
+
+    /// What an earlier run of the scene has left in the directory, if there was
+    /// one. Throws BadInput if it does not belong to the scene.
+    template <int dim>
+    RunState<dim>
+    earlier_state(const Parameters &parameters, std::ostream &out)
+    {
+      const std::string file = state_file(parameters.output.directory);
+      if (!std::filesystem::exists(file))
+        {
+          out << "There is no " << file
+              << ": the run starts from the beginning.\n\n";
+          return {};
+        }
+      const RunState<dim> state =
+        read_state<dim>(file, parameters.effective_scene);
+      const LoadPathParameters &load_path = parameters.load_path;
+      for (unsigned int k = 0; k < state.path.steps.size(); ++k)
+        {
+          const LoadFactors before = state.path.steps[k].factors();
+          if (k == load_path.factors.size() || !(load_path.at(k) == before))
+            throw BadInput(
+              {file + ": Load path/Factors: step " + std::to_string(k + 1) +
+               " was with " + load_path.name(before) +
+               "; only later steps may differ, or run without --restart"});
+        }
+      return state;
     }
 
 
 
-    /// The steps of run(), in their order.
+    /// The scene on the first mesh of this run, with what an earlier one has
+    /// found there.
     template <int dim>
-    class SceneRun
+    Answer<dim>
+    begin(const Parameters &parameters, const RunState<dim> &earlier)
+    {
+      Answer<dim> begun;
+      begun.scene       = make_first_scene<dim>(parameters,
+                                          parameters.accuracy,
+                                          parameters.solver.start,
+                                          earlier.meshes.divisions);
+      begun.state       = earlier;
+      begun.state.scene = parameters.effective_scene;
+      begun.state.mesh  = mesh_checksum(*begun.scene);
+      if (earlier.mesh != 0 && earlier.mesh != begun.state.mesh)
+        throw BadInput({state_file(parameters.output.directory) +
+                        " is of another mesh; run without --restart"});
+      for (DofVector *const u :
+           {&begun.state.meshes.start, &begun.state.path.u})
+        if (u->size() > 0)
+          *u = from_serial_order(begun.scene->problem().unknowns(), *u);
+      begun.path.progress = begun.state.path;
+      return begun;
+    }
+
+
+
+    /// The steps from a scene on its first mesh to its answer.
+    template <int dim>
+    class Run
     {
     public:
-      /// Mesh, assembly and choice of the method.
-      SceneRun(const Parameters &parameters,
-               std::ostream     &out,
-               const RunOptions  options)
-        : parameters(parameters)
-        , out(out)
-        , options(options)
-        , choice(choose_method(parameters, parameters.solver))
-        , record(parameters.output.machine_details)
-      {
-        // The state of an earlier run decides the mesh, so it is read first.
-        if (options.restart)
-          read_state_before();
-        state.scene              = parameters.effective_scene;
-        scene                    = make_first_scene<dim>(parameters,
-                                      parameters.accuracy,
-                                      parameters.solver.start,
-                                      state.meshes.divisions);
-        const std::uint64_t mesh = mesh_checksum(*scene);
-        if (state.mesh != 0 && state.mesh != mesh)
-          throw BadInput({state_file() + " is of another mesh; run without "
-                                         "--restart"});
-        // Displacements in the file have the order of one rank, here they get
-        // that of these ranks.
-        state.mesh      = mesh;
-        begun           = state.meshes;
-        begun.start     = on_these_ranks(state.meshes.start);
-        path.progress   = state.path;
-        path.progress.u = on_these_ranks(state.path.u);
-        choose_linear_solver(*scene, parameters.solver, choice);
-        check_supports_of_method(choice, parameters.solver, *scene);
-        // The exact displacement is compared with zero before the solve, so
-        // that nothing is lost if it is not finite somewhere.
-        error_of(parameters.verification.exact_displacement,
-                 *scene,
-                 DofVector(scene->problem().unknowns().n_dofs()));
-        certification.emplace(parameters.certificate.kind,
-                              parameters.accuracy.certified_width,
-                              parameters.solver.proof,
-                              scene);
-        result.times = {{"mesh", scene->mesh_seconds()},
-                        {"assembly", scene->assembly_seconds()}};
-      }
+      const Parameters   &parameters;
+      const RunOptions    options;
+      std::ostream       &out;
+      const SolveSettings settings; ///< on the first mesh
+      RunOutput<dim>     &output;
+      Record             &record;
 
-      /// Locks the directory, removes what an earlier run left and writes the
-      /// effective scene. Returns false if it cannot.
-      bool
-      open_output()
+      /// The minimum on one mesh.
+      Answer<dim>
+      minimise(Answer<dim> answer) const
       {
-        list_files(*scene);
-        try
+        const DofVector &start   = answer.state.meshes.start;
+        answer.path.result       = Debond::solve(settings.choice,
+                                           settings.parameters,
+                                           *answer.scene,
+                                           log(),
+                                           options.terminal,
+                                           start.size() > 0 ? &start : nullptr);
+        const SolveResult &found = answer.path.result;
+        if (found.u.size() > 0 && (found.status == SolverStatus::interrupted ||
+                                   found.minimum.interrupted))
           {
-            // The lock comes before anything is removed: another run may be
-            // writing to this directory.
-            on_all_ranks(scene->ranks(), [&]() {
-              if (is_first_rank())
-                lock.emplace(parameters.output.directory);
-            });
-            remove_files(files, parameters.output.directory);
-            if (path.progress.steps.empty())
-              path_output->remove_steps();
-            // An old state would otherwise be taken up by a later --restart
-            // that means this run.
-            if (!options.restart)
-              remove_files({{"restart.state", {}, {}}},
-                           parameters.output.directory);
-            written.push_back(
-              output_path(parameters.output.directory, "parameters.prm"));
-            write_atomically(written.back(), [&](std::ostream &file) {
-              file << parameters.effective_scene;
-            });
+            answer.state.meshes.start = found.u;
+            output.save(answer.state, *answer.scene);
           }
-        catch (const std::runtime_error &error)
-          {
-            if (is_first_rank())
-              print_error(error.what());
-            return false;
-          }
-        return true;
+        return answer;
       }
 
-      void
-      say_problem()
+      /// The minimum, or the states of the load path, on meshes that are
+      /// refined until their error is small enough.
+      Answer<dim>
+      refine(Answer<dim> answer, RefinementGoal<dim> *const goal) const
       {
-        report_problem(*scene, choice, parameters.solver.bundle.u, record);
-        if (n_started_ranks() > 1 && record.has_details())
-          record.line("ranks", std::to_string(n_started_ranks()));
-        record.print(out);
-      }
-
-      /// The minimum, on meshes that are refined if the scene asks for it, or
-      /// the states of a load path.
-      void
-      solve()
-      {
-        dealii::Timer timer;
-        const bool    has_path = !parameters.load_path.factors.empty();
-        if (parameters.accuracy.is_adaptive())
-          refine();
-        else if (!has_path)
-          minimise();
-        // Refinement has followed the path on its last mesh as well, and only
-        // the global branch and the arc are left to do; otherwise the path
-        // begins here.
-        if (has_path && result.solve.status != SolverStatus::interrupted)
-          follow();
-        else if (!path.progress.steps.empty())
-          {
-            result.path         = path.progress.steps;
-            result.verification = verify(scene->problem(),
-                                         *path.bonds,
-                                         scene->law(),
-                                         result.solve.u,
-                                         result.solve.load_factor);
-          }
-        result.times.emplace_back("solve", timer.wall_time());
-      }
-
-      /// Verification, estimate and certificate.
-      void
-      check()
-      {
-        check_result(parameters.verification,
-                     parameters.notes,
-                     *scene,
-                     path.bonds ? *path.bonds : scene->adhesion(),
-                     shortfall,
-                     result);
-        certification->certify(scene, result);
-        report_result(*scene, choice, result, record);
-        certification->report(record);
-      }
-
-      void
-      write()
-      {
-        dealii::Timer timer;
-        try
-          {
-            // The summary comes last and names the cost of all that was written
-            // before, so that whoever finds it knows the run to be complete.
-            append(write_files(files, parameters.output.directory), written);
-            result.times.emplace_back("output", timer.wall_time());
-            result.times.emplace_back("total", total.wall_time());
-            report_cost(result,
-                        choice,
-                        -least_of_ranks(-peak_memory()),
-                        record);
-            const std::string summary =
-              output_path(parameters.output.directory, "summary.json");
-            record.write(summary);
-            written.push_back(summary);
-            if (has_state)
-              written.push_back(state_file());
-          }
-        catch (const std::runtime_error &error)
-          {
-            output_error = error.what();
-          }
-        report_files(written, record);
-        record.print(out);
-      }
-
-      /// Says on std::cerr what did not go well.
-      ExitCode
-      conclude() const
-      {
-        const bool interrupted = result.solve.minimum.interrupted;
-        const auto print       = [](const std::string &message) {
-          if (is_first_rank())
-            print_error(message);
+        AdaptiveObserver<dim> observer;
+        observer.level_is_done = [&](const unsigned int   number,
+                                     const AdaptiveLevel &level) {
+          report_level(number, level, record);
+          record.print(out);
         };
-        // In the order of what the user has to know first: no answer, a search
-        // that was cut short, files that are missing.
-        if (!result.is_answer())
-          print("NOT CONVERGED (" + result.status + "): " + result.message);
-        else if (interrupted)
-          print("the search or the proof was interrupted; the result is what "
-                "it had found");
-        if (!output_error.empty())
+        observer.next_mesh_is_made = [&](const AdaptiveProgress &progress,
+                                         const Scene<dim>       &next) {
+          answer.state.mesh   = mesh_checksum(next);
+          answer.state.meshes = progress;
+          output.save(answer.state, next);
+          output.begin_mesh(next);
+        };
+        observer.step_is_done = [&](const PathProgress<dim> &progress,
+                                    const Verification<dim> &verification,
+                                    const AdhesionIntegral<dim> &) {
+          output.add(progress, verification);
+        };
+        // A path that has begun stays on its mesh.
+        if (answer.state.has_last_mesh)
           {
-            print(output_error);
-            return ExitCode::output_not_saved;
+            const auto &levels = answer.state.meshes.levels;
+            for (unsigned int k = 0; k < levels.size(); ++k)
+              observer.level_is_done(k, levels[k]);
+            return answer;
           }
-        if (result.solve.status == SolverStatus::interrupted ||
-            (result.is_success() && interrupted))
-          return ExitCode::interrupted;
-        return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
+        try
+          {
+            AdaptiveResult<dim> adaptive =
+              solve_adaptively(settings,
+                               parameters.accuracy,
+                               goal,
+                               answer.state.meshes,
+                               observer,
+                               std::move(answer.scene));
+            answer.scene               = adaptive.scene;
+            answer.path                = std::move(adaptive.path);
+            answer.path.result         = std::move(adaptive.solve);
+            answer.state.meshes.levels = std::move(adaptive.levels);
+            answer.state.shortfall     = adaptive.shortfall;
+            answer.state.has_last_mesh = true;
+          }
+        catch (const BadInput &)
+          {
+            // A load that only the finer mesh shows to have no integral.
+            output.withdraw();
+            throw;
+          }
+        // The steps are of the mesh that was interrupted.
+        if (answer.path.result.status == SolverStatus::interrupted)
+          output.begin_mesh(*answer.scene);
+        return answer;
+      }
+
+      /// The states of the load path; of a refined mesh the global branch and
+      /// the arc are left to do.
+      Answer<dim>
+      follow(Answer<dim> answer) const
+      {
+        output.begin_path(*answer.scene, answer.path.progress.steps);
+        answer.path = follow_load_path<dim>(
+          parameters.load_path,
+          settings,
+          *answer.scene,
+          answer.path,
+          [&](const PathProgress<dim> &progress,
+              const Verification<dim> &verification,
+              const AdhesionIntegral<dim> &) {
+            output.add(progress, verification);
+            if (!progress.steps.back().message.empty())
+              return;
+            answer.state.path = progress;
+            output.save(answer.state, *answer.scene);
+          },
+          log());
+        return answer;
+      }
+
+      /// All that the scene asks for.
+      Answer<dim>
+      solve(Answer<dim> begun, RefinementGoal<dim> *const goal) const
+      {
+        const bool  has_path = !parameters.load_path.factors.empty();
+        Answer<dim> answer   = parameters.accuracy.is_adaptive() ?
+                                 refine(std::move(begun), goal) :
+                               has_path ? std::move(begun) :
+                                          minimise(std::move(begun));
+        if (has_path && answer.path.result.status != SolverStatus::interrupted)
+          return follow(std::move(answer));
+        return answer;
       }
 
     private:
-      void
-      list_files(const Scene<dim> &on_mesh)
-      {
-        // The files depend on the mesh, whose scene may be replaced by a finer
-        // one; so the list is made anew for each.
-        files = output_files(parameters.output, on_mesh, result);
-        path_output.emplace(parameters.output,
-                            on_mesh.problem(),
-                            result.path,
-                            result.arc);
-        append(path_output->files(), files);
-        append(certification->files(parameters.output, on_mesh), files);
-      }
-
-      std::string
-      state_file() const
-      {
-        return output_path(parameters.output.directory, "restart.state");
-      }
-
-      void
-      read_state_before()
-      {
-        if (!std::filesystem::exists(state_file()))
-          {
-            out << "There is no " << state_file()
-                << ": the run starts from the beginning.\n\n";
-            return;
-          }
-        state = read_state<dim>(state_file(), parameters.effective_scene);
-        // A path may be continued with other factors than it was begun with, as
-        // long as the steps that are done are the same.
-        const LoadPathParameters &load_path = parameters.load_path;
-        for (unsigned int k = 0; k < state.path.steps.size(); ++k)
-          {
-            const LoadFactors before = state.path.steps[k].factors();
-            if (k == load_path.factors.size() ||
-                load_path.at(k).loads != before.loads ||
-                load_path.at(k).displacements != before.displacements)
-              throw BadInput(
-                {state_file() + ": Load path/Factors: step " +
-                 std::to_string(k + 1) + " was with " + load_path.name(before) +
-                 "; only later steps may differ, or run without --restart"});
-          }
-      }
-
-      /// A displacement of an earlier run.
-      DofVector
-      on_these_ranks(const DofVector &u) const
-      {
-        return u.size() == 0 ?
-                 u :
-                 from_serial_order(scene->problem().unknowns(), u);
-      }
-
-      /// Writes the state for --restart. A run whose state cannot be written
-      /// goes on.
-      void
-      save_state()
-      {
-        try
-          {
-            write_state(state, state_file());
-            has_state = true;
-          }
-        catch (const std::runtime_error &error)
-          {
-            output_error = error.what();
-          }
-      }
-
-      void
-      minimise()
-      {
-        result.solve =
-          Debond::solve(choice,
-                        parameters.solver,
-                        *scene,
-                        log(),
-                        options.terminal,
-                        begun.start.size() > 0 ? &begun.start : nullptr);
-        // A signal leaves the last iterate in the state, from which --restart
-        // goes on.
-        if (result.solve.u.size() > 0 &&
-            (result.solve.status == SolverStatus::interrupted ||
-             result.solve.minimum.interrupted))
-          {
-            state.meshes.start =
-              in_serial_order(scene->problem().unknowns(), result.solve.u);
-            save_state();
-          }
-      }
-
-      /// The stream for the iterations; null if there is none.
+      /// For the iterations; null if there is none.
       std::ostream *
       log() const
       {
         return record.has_details() ? &out : nullptr;
       }
-
-      SolveSettings
-      settings() const
-      {
-        return {choice, parameters.solver, parameters.verification.tolerance};
-      }
-
-      void
-      refine()
-      {
-        // Each mesh is reported when it is done, and its state saved before the
-        // next one is solved, so that a run that ends there begins again with
-        // that mesh.
-        AdaptiveObserver<dim> observer;
-        observer.level_is_done = [this](const AdaptiveLevel &level) {
-          report_level(static_cast<unsigned int>(result.levels.size()),
-                       level,
-                       record);
-          record.print(out);
-          result.levels.push_back(level);
-        };
-        observer.next_mesh_is_made = [this](const AdaptiveProgress &progress,
-                                            const Scene<dim>       &next) {
-          state.mesh   = mesh_checksum(next);
-          state.meshes = progress;
-          state.meshes.start =
-            in_serial_order(next.problem().unknowns(), progress.start);
-          save_state();
-          list_files(next);
-          path_output->remove_steps();
-        };
-        observer.step_is_done = [this](const PathProgress<dim> &progress,
-                                       const Verification<dim> &verification,
-                                       const AdhesionIntegral<dim> &) {
-          path_output->add(progress.steps.back(), progress.u, verification);
-        };
-        // A path that has begun stays on its mesh.
-        if (state.has_last_mesh)
-          {
-            for (const AdaptiveLevel &level : begun.levels)
-              observer.level_is_done(level);
-            shortfall = state.shortfall;
-            return;
-          }
-        AdaptiveResult<dim> adaptive;
-        try
-          {
-            adaptive = solve_adaptively(settings(),
-                                        parameters.accuracy,
-                                        certification->goal(),
-                                        begun,
-                                        observer,
-                                        scene);
-          }
-        catch (const BadInput &)
-          {
-            // A load that only the finer mesh shows to have no integral is an
-            // error of the input. It leaves the directory as it was found, like
-            // those that are seen at once.
-            if (lock)
-              {
-                for (const std::string &file : written)
-                  std::filesystem::remove(file);
-                std::filesystem::remove(state_file());
-                lock->withdraw();
-              }
-            throw;
-          }
-        result.solve        = std::move(adaptive.solve);
-        shortfall           = adaptive.shortfall;
-        path                = std::move(adaptive.path);
-        path.result         = result.solve;
-        state.meshes.levels = result.levels;
-        // From here on a restart stays on this mesh.
-        state.has_last_mesh = true;
-        state.shortfall     = shortfall;
-        list_files(*scene);
-        // They are of the mesh that was interrupted.
-        if (result.solve.status == SolverStatus::interrupted)
-          path_output->remove_steps();
-      }
-
-      void
-      follow()
-      {
-        if (!path.progress.steps.empty())
-          path_output->go_on_after(path.progress.steps);
-        path = follow_load_path<dim>(
-          parameters.load_path,
-          settings(),
-          *scene,
-          path,
-          [this](const PathProgress<dim> &progress,
-                 const Verification<dim> &verification,
-                 const AdhesionIntegral<dim> &) {
-            result.verification = verification;
-            path_output->add(progress.steps.back(), progress.u, verification);
-            // A step that went wrong is not saved, so that a restart tries it
-            // again.
-            if (!progress.steps.back().message.empty())
-              return;
-            state.path = progress;
-            state.path.u =
-              in_serial_order(scene->problem().unknowns(), progress.u);
-            save_state();
-          },
-          log());
-        result.solve = std::move(path.result);
-        result.path  = path.progress.steps;
-        result.arc   = path.arc;
-      }
-
-      const dealii::Timer total;
-      const Parameters   &parameters;
-      std::ostream       &out;
-      const RunOptions    options;
-
-      MethodChoice                      choice;
-      Record                            record;
-      std::shared_ptr<const Scene<dim>> scene;
-      std::optional<Certification<dim>> certification;
-
-      RunState<dim>     state; ///< as it is to be saved
-      bool              has_state = false;
-      AdaptiveProgress  begun; ///< by an earlier run
-      RunResult<dim>    result;
-      FollowedPath<dim> path;      ///< begun by an earlier run or refine()
-      std::string       shortfall; ///< of refinement
-
-      std::vector<OutputFile>            files;
-      std::optional<LoadPathOutput<dim>> path_output;
-      std::optional<DirectoryLock>       lock;
-      std::vector<std::string>           written;
-      std::string                        output_error;
     };
+
+
+
+    /// Says on std::cerr what did not go well.
+    template <int dim>
+    ExitCode
+    conclude(const RunResult<dim> &result, const std::string &output_error)
+    {
+      const bool interrupted = result.solve.minimum.interrupted;
+      const auto print       = [](const std::string &message) {
+        if (is_first_rank())
+          print_error(message);
+      };
+      if (!result.is_answer())
+        print("NOT CONVERGED (" + result.status + "): " + result.message);
+      else if (interrupted)
+        print("the search or the proof was interrupted; the result is what "
+              "it had found");
+      if (!output_error.empty())
+        {
+          print(output_error);
+          return ExitCode::output_not_saved;
+        }
+      if (result.solve.status == SolverStatus::interrupted ||
+          (result.is_success() && interrupted))
+        return ExitCode::interrupted;
+      return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
+    }
   } // namespace
 
 
@@ -475,14 +262,80 @@ namespace Debond
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const RunOptions options)
   {
-    SceneRun<dim> scene(parameters, out, options);
-    if (!scene.open_output())
-      return ExitCode::output_not_saved;
-    scene.say_problem();
-    scene.solve();
-    scene.check();
-    scene.write();
-    return scene.conclude();
+    dealii::Timer       total, timer;
+    MethodChoice        choice = choose_method(parameters, parameters.solver);
+    const RunState<dim> earlier =
+      options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
+    Answer<dim>    answer = begin(parameters, earlier);
+    RunResult<dim> result;
+    result.times = {{"mesh", answer.scene->mesh_seconds()},
+                    {"assembly", answer.scene->assembly_seconds()}};
+    choose_linear_solver(*answer.scene, parameters.solver, choice);
+    check_supports_of_method(choice, parameters.solver, *answer.scene);
+    check_exact_displacement(parameters.verification.exact_displacement,
+                             *answer.scene);
+    Certification<dim> certification(parameters.certificate.kind,
+                                     parameters.accuracy.certified_width,
+                                     parameters.solver.proof,
+                                     answer.scene);
+
+    std::optional<RunOutput<dim>> output;
+    try
+      {
+        output.emplace(parameters,
+                       *answer.scene,
+                       certification,
+                       options.restart ? &earlier : nullptr);
+      }
+    catch (const std::runtime_error &error)
+      {
+        if (is_first_rank())
+          print_error(error.what());
+        return ExitCode::output_not_saved;
+      }
+    Record record(parameters.output.machine_details);
+    report_problem(*answer.scene, choice, parameters.solver.bundle.u, record);
+    if (n_started_ranks() > 1 && record.has_details())
+      record.line("ranks", std::to_string(n_started_ranks()));
+    record.print(out);
+
+    timer.restart();
+    answer =
+      Run<dim>{parameters,
+               options,
+               out,
+               {choice, parameters.solver, parameters.verification.tolerance},
+               *output,
+               record}
+        .solve(std::move(answer), certification.goal());
+    result.times.emplace_back("solve", timer.wall_time());
+    result.solve  = answer.path.result;
+    result.levels = answer.state.meshes.levels;
+    result.path   = answer.path.progress.steps;
+    result.arc    = answer.path.arc;
+
+    const Scene<dim> &scene = *answer.scene;
+    check_result(parameters.verification,
+                 parameters.notes,
+                 scene,
+                 answer.path.bonds ? *answer.path.bonds : scene.adhesion(),
+                 answer.state.shortfall,
+                 result);
+    certification.certify(answer.scene, result);
+    report_result(scene, choice, result, record);
+    certification.report(record);
+
+    timer.restart();
+    if (output->write(scene, result))
+      {
+        result.times.emplace_back("output", timer.wall_time());
+        result.times.emplace_back("total", total.wall_time());
+        report_cost(result, choice, -least_of_ranks(-peak_memory()), record);
+        output->write_summary(record);
+      }
+    report_files(output->files_written(), record);
+    record.print(out);
+    return conclude(result, output->error());
   }
 
 

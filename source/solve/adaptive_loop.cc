@@ -120,17 +120,17 @@ namespace Debond
     class AdaptiveLoop
     {
     public:
-      AdaptiveLoop(const SolveSettings               &settings,
-                   const AccuracyParameters          &accuracy,
-                   RefinementGoal<dim>               *goal,
-                   const AdaptiveProgress            &begun,
-                   const AdaptiveObserver<dim>       &observer,
-                   std::shared_ptr<const Scene<dim>> &scene)
+      AdaptiveLoop(const SolveSettings              &settings,
+                   const AccuracyParameters         &accuracy,
+                   RefinementGoal<dim>              *goal,
+                   const AdaptiveProgress           &begun,
+                   const AdaptiveObserver<dim>      &observer,
+                   std::shared_ptr<const Scene<dim>> first)
         : settings(settings)
         , accuracy(accuracy)
         , goal(goal)
         , observer(observer)
-        , scene(scene)
+        , scene(std::move(first))
         , problem(scene->parameters())
         , ranks(scene->ranks())
         , wanted(choose_method(problem, settings.parameters))
@@ -139,10 +139,10 @@ namespace Debond
       {
         // The meshes of an interrupted run count as this one's: the observer
         // sees all of them, and the factor of the error is measured with them.
-        for (AdaptiveLevel &level : progress.levels)
+        for (unsigned int k = 0; k < progress.levels.size(); ++k)
           {
-            observer.level_is_done(level);
-            growth.add(level);
+            observer.level_is_done(k, progress.levels[k]);
+            growth.add(progress.levels[k]);
           }
       }
 
@@ -229,6 +229,8 @@ namespace Debond
                                nullptr,
                                false,
                                &result.solve.u);
+        result.scene  = scene;
+        result.levels = progress.levels;
         return std::move(result);
       }
 
@@ -337,8 +339,9 @@ namespace Debond
                                    goal_here.width,
                                    seconds + timer.wall_time()};
             growth.add(level);
+            observer.level_is_done(
+              static_cast<unsigned int>(progress.levels.size()), level);
             progress.levels.push_back(level);
-            observer.level_is_done(level);
           }
         return true;
       }
@@ -476,11 +479,11 @@ namespace Debond
           "The result is that of the last mesh that was finished.";
       }
 
-      const SolveSettings               &settings;
-      const AccuracyParameters          &accuracy;
-      RefinementGoal<dim> *const         goal; ///< null without one
-      const AdaptiveObserver<dim>       &observer;
-      std::shared_ptr<const Scene<dim>> &scene;
+      const SolveSettings              &settings;
+      const AccuracyParameters         &accuracy;
+      RefinementGoal<dim> *const        goal; ///< null without one
+      const AdaptiveObserver<dim>      &observer;
+      std::shared_ptr<const Scene<dim>> scene;
 
       // These are the same on all meshes.
       const ProblemParameters problem;
@@ -553,14 +556,15 @@ namespace Debond
 
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings               &settings,
-                   const AccuracyParameters          &accuracy,
-                   RefinementGoal<dim>               *goal,
-                   const AdaptiveProgress            &begun,
-                   const AdaptiveObserver<dim>       &observer,
-                   std::shared_ptr<const Scene<dim>> &scene)
+  solve_adaptively(const SolveSettings              &settings,
+                   const AccuracyParameters         &accuracy,
+                   RefinementGoal<dim>              *goal,
+                   const AdaptiveProgress           &begun,
+                   const AdaptiveObserver<dim>      &observer,
+                   std::shared_ptr<const Scene<dim>> scene)
   {
-    return AdaptiveLoop<dim>(settings, accuracy, goal, begun, observer, scene)
+    return AdaptiveLoop<dim>(
+             settings, accuracy, goal, begun, observer, std::move(scene))
       .run();
   }
 

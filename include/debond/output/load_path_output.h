@@ -22,16 +22,11 @@ namespace Debond
   class LoadPathOutput
   {
   public:
-    /// Keeps references to all: the @p steps and the @p arc need not be there
-    /// yet.
-    LoadPathOutput(const OutputParameters               &output,
-                   const ElasticProblem<dim>            &problem,
-                   const std::vector<LoadPathStep<dim>> &steps,
-                   const std::vector<LoadPathStep<dim>> &arc)
+    /// Keeps references.
+    LoadPathOutput(const OutputParameters    &output,
+                   const ElasticProblem<dim> &problem)
       : output(output)
       , problem(problem)
-      , steps(steps)
-      , arc(arc)
     {}
 
     /// Removes the files that an earlier run left in load_path/.
@@ -50,10 +45,11 @@ namespace Debond
         const DofVector         &u,
         const Verification<dim> &verification);
 
-    /// Returns all files but those in load_path/: the table and the records of
-    /// the files above.
+    /// Returns all files but those in load_path/: the tables of @p steps and @p
+    /// arc, which are kept, and the records of the files above.
     std::vector<OutputFile>
-    files();
+    files(const std::vector<LoadPathStep<dim>> &steps,
+          const std::vector<LoadPathStep<dim>> &arc) const;
 
   private:
     std::string
@@ -68,14 +64,12 @@ namespace Debond
     OutputFile
     series_file(const std::string &name, const Series &series) const;
 
-    const OutputParameters               &output;
-    const ElasticProblem<dim>            &problem;
-    const std::vector<LoadPathStep<dim>> &steps;
-    const std::vector<LoadPathStep<dim>> &arc;
-    std::vector<LoadPathStep<dim>>        so_far; ///< without a global branch
-    Series                                bodies;
-    Series                                contacts;
-    std::string                           error;
+    const OutputParameters        &output;
+    const ElasticProblem<dim>     &problem;
+    std::vector<LoadPathStep<dim>> so_far; ///< without a global branch
+    Series                         bodies;
+    Series                         contacts;
+    std::string                    error;
   };
 } // namespace Debond
 

@@ -13,13 +13,12 @@
 
 namespace Debond
 {
-  /// The difference from the exact displacement, if that is known; then
-  /// throws BadInput if it is not finite somewhere.
+  /// Throws BadInput if the exact displacement, unless it is empty, is not
+  /// finite somewhere on the mesh: before a solve, so that nothing is lost.
   template <int dim>
-  std::optional<DisplacementError>
-  error_of(const std::string &exact_displacement,
-           const Scene<dim>  &scene,
-           const DofVector   &u);
+  void
+  check_exact_displacement(const std::string &exact_displacement,
+                           const Scene<dim>  &scene);
 
   /// Verifies what the solver found, estimates the error of the mesh and adds
   /// what else is to be said of the result. Success needs the stop criterion

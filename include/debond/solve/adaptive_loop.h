@@ -35,7 +35,9 @@ namespace Debond
   template <int dim>
   struct AdaptiveObserver
   {
-    std::function<void(const AdaptiveLevel &)> level_is_done;
+    /// The levels are numbered from 0.
+    std::function<void(const unsigned int, const AdaptiveLevel &)>
+      level_is_done;
 
     /// The scene on the next mesh, before it is solved.
     std::function<void(const AdaptiveProgress &, const Scene<dim> &)>
@@ -50,8 +52,12 @@ namespace Debond
   template <int dim>
   struct AdaptiveResult
   {
-    SolveResult       solve; ///< on the last mesh
-    FollowedPath<dim> path;  ///< if the scene has one
+    /// The scene on the last mesh on which there is a result.
+    std::shared_ptr<const Scene<dim>> scene;
+
+    SolveResult                solve;
+    FollowedPath<dim>          path; ///< if the scene has one
+    std::vector<AdaptiveLevel> levels;
 
     /// The reason why the loop has not reached its target; empty if it has.
     std::string shortfall;
@@ -76,17 +82,16 @@ namespace Debond
   /// the goal, if there are any. A load path is
   /// followed on each mesh, without its global branch and its arc, for the
   /// estimate of the factor that has the largest one relative to its J; the
-  /// result is that of the last factor. @p scene becomes that of the result,
-  /// the last mesh on which there is one. @p begun is what an earlier run had
+  /// result is that of the last factor. @p begun is what an earlier run had
   /// done before @p scene, of which the observer is told again.
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings               &settings,
-                   const AccuracyParameters          &accuracy,
-                   RefinementGoal<dim>               *goal,
-                   const AdaptiveProgress            &begun,
-                   const AdaptiveObserver<dim>       &observer,
-                   std::shared_ptr<const Scene<dim>> &scene);
+  solve_adaptively(const SolveSettings              &settings,
+                   const AccuracyParameters         &accuracy,
+                   RefinementGoal<dim>              *goal,
+                   const AdaptiveProgress           &begun,
+                   const AdaptiveObserver<dim>      &observer,
+                   std::shared_ptr<const Scene<dim>> scene);
 } // namespace Debond
 
 #endif

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/append.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
+#include <debond/program/run_output.h>
+#include <debond/solve/displacement.h>
+
+#include <filesystem>
+
+namespace Debond
+{
+  std::string
+  state_file(const std::string &directory)
+  {
+    return (std::filesystem::path(directory) / "restart.state").string();
+  }
+
+
+
+  template <int dim>
+  RunOutput<dim>::RunOutput(const Parameters         &parameters,
+                            const Scene<dim>         &scene,
+                            const Certification<dim> &certification,
+                            const RunState<dim>      *begun)
+    : output(parameters.output)
+    , certification(certification)
+  {
+    on_all_ranks(scene.ranks(), [this]() {
+      if (is_first_rank())
+        lock = std::make_unique<DirectoryLock>(output.directory);
+    });
+    begin_path(scene);
+    remove_files(files(scene, {}), output.directory);
+    if (begun == nullptr || begun->path.steps.empty())
+      path_output->remove_steps();
+    if (begun == nullptr)
+      remove_files({{"restart.state", {}, {}}}, output.directory);
+    written.push_back(path("parameters.prm"));
+    write_atomically(written.back(), [&](std::ostream &file) {
+      file << parameters.effective_scene;
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::begin_path(const Scene<dim>                     &scene,
+                             const std::vector<LoadPathStep<dim>> &done)
+  {
+    path_output.emplace(output, scene.problem());
+    if (!done.empty())
+      path_output->go_on_after(done);
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::begin_mesh(const Scene<dim> &scene)
+  {
+    begin_path(scene);
+    path_output->remove_steps();
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::add(const PathProgress<dim> &progress,
+                      const Verification<dim> &verification)
+  {
+    path_output->add(progress.steps.back(), progress.u, verification);
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::save(RunState<dim> state, const Scene<dim> &scene)
+  {
+    // Of any number of ranks.
+    for (DofVector *const u : {&state.meshes.start, &state.path.u})
+      if (u->size() > 0)
+        *u = in_serial_order(scene.problem().unknowns(), *u);
+    attempt([&]() {
+      write_state(state, state_file(output.directory));
+      has_state = true;
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::withdraw()
+  {
+    if (!lock)
+      return;
+    written.push_back(state_file(output.directory));
+    for (const std::string &file : written)
+      std::filesystem::remove(file);
+    lock->withdraw();
+  }
+
+
+
+  template <int dim>
+  bool
+  RunOutput<dim>::write(const Scene<dim> &scene, const RunResult<dim> &result)
+  {
+    return attempt([&]() {
+      append(write_files(files(scene, result), output.directory), written);
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::write_summary(const Record &record)
+  {
+    attempt([&]() {
+      record.write(path("summary.json"));
+      written.push_back(path("summary.json"));
+    });
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  RunOutput<dim>::files_written() const
+  {
+    std::vector<std::string> all = written;
+    if (has_state)
+      all.push_back(state_file(output.directory));
+    return all;
+  }
+
+
+
+  template <int dim>
+  std::string
+  RunOutput<dim>::path(const std::string &name) const
+  {
+    return (std::filesystem::path(output.directory) / name).string();
+  }
+
+
+
+  template <int dim>
+  std::vector<OutputFile>
+  RunOutput<dim>::files(const Scene<dim> &scene, const RunResult<dim> &result)
+  {
+    std::vector<OutputFile> all = output_files(output, scene, result);
+    append(path_output->files(result.path, result.arc), all);
+    append(certification.files(output, scene), all);
+    return all;
+  }
+
+
+
+  template <int dim>
+  template <typename Action>
+  bool
+  RunOutput<dim>::attempt(const Action &action)
+  {
+    try
+      {
+        action();
+        return true;
+      }
+    catch (const std::runtime_error &error)
+      {
+        message = error.what();
+        return false;
+      }
+  }
+
+
+
+  template class RunOutput<2>;
+  template class RunOutput<3>;
+} // namespace Debond
