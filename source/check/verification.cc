@@ -578,7 +578,6 @@ namespace Debond
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,
          const AdhesionIntegral<dim> &adhesion,
-         const AdhesiveLaw           &law,
          const DofVector             &u,
          const LoadFactors            factors,
          const double                 tolerance)
@@ -600,11 +599,12 @@ namespace Debond
     const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
-    result.state_names     = state_names(law);
+    result.state_names     = state_names(adhesion.adhesive_law());
     result.penetration     = 0.;
     result.largest_opening = 0.;
-    result.broken_zone     = broken_zone(boundary, law, adhesion, s);
-    result.without_bonds   = zone_without_bonds(boundary, adhesion);
+    result.broken_zone =
+      broken_zone(boundary, adhesion.adhesive_law(), adhesion, s);
+    result.without_bonds = zone_without_bonds(boundary, adhesion);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         result.largest_opening = std::max(result.largest_opening, -s(i));

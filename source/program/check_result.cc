@@ -158,19 +158,13 @@ namespace Debond
     {
       try
         {
-          result.estimate =
-            estimate_error<dim>({scene.problem(),
-                                 bonds,
-                                 scene.conditions(),
-                                 scene.supports(),
-                                 scene.loads(),
-                                 &scene.dead_loads()},
-                                result.solve.u,
-                                result.solve.functional,
-                                result.solve.load_factor,
-                                result.levels.empty() ?
-                                  std::nullopt :
-                                  result.levels.back().error_factor);
+          result.estimate = estimate_error(scene.estimated(bonds),
+                                           result.solve.u,
+                                           result.solve.functional,
+                                           result.solve.load_factor,
+                                           result.levels.empty() ?
+                                             std::nullopt :
+                                             result.levels.back().error_factor);
           if ((!result.levels.empty() ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))
@@ -235,12 +229,9 @@ namespace Debond
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
-    result.verification = verify(scene.problem(),
-                                 bonds,
-                                 scene.law(),
-                                 result.solve.u,
-                                 result.solve.load_factor);
-    const auto values   = [&](const Probes<dim> &probes) {
+    result.verification =
+      verify(scene.problem(), bonds, result.solve.u, result.solve.load_factor);
+    const auto values = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solve.u,
                            result.solve.load_factor);

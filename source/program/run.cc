@@ -46,6 +46,8 @@ namespace Debond
         }
       const RunState<dim> state =
         read_state<dim>(file, parameters.effective_scene);
+      // A path may be continued with other factors than it was begun with, as
+      // long as the steps that are done are the same.
       const LoadPathParameters &load_path = parameters.load_path;
       for (unsigned int k = 0; k < state.path.steps.size(); ++k)
         {
@@ -78,6 +80,8 @@ namespace Debond
       if (earlier.mesh != 0 && earlier.mesh != begun.state.mesh)
         throw BadInput({state_file(parameters.output.directory) +
                         " is of another mesh; run without --restart"});
+      // Displacements in the file have the order of one rank, here they get
+      // that of these ranks.
       for (DofVector *const u :
            {&begun.state.meshes.start, &begun.state.path.u})
         if (u->size() > 0)
@@ -104,13 +108,15 @@ namespace Debond
       Answer<dim>
       minimise(Answer<dim> answer) const
       {
-        const DofVector &start   = answer.state.meshes.start;
-        answer.path.result       = Debond::solve(settings.choice,
+        const DofVector &start = answer.state.meshes.start;
+        answer.path.result     = Debond::solve(settings.choice,
                                            settings.parameters,
                                            *answer.scene,
                                            log(),
                                            options.terminal,
                                            start.size() > 0 ? &start : nullptr);
+        // A signal leaves the last iterate in the state, from which --restart
+        // goes on.
         const SolveResult &found = answer.path.result;
         if (found.u.size() > 0 && (found.status == SolverStatus::interrupted ||
                                    found.minimum.interrupted))
@@ -126,6 +132,9 @@ namespace Debond
       Answer<dim>
       refine(Answer<dim> answer, RefinementGoal<dim> *const goal) const
       {
+        // Each mesh is reported when it is done, and its state saved before the
+        // next one is solved, so that a run that ends there begins again with
+        // that mesh.
         AdaptiveObserver<dim> observer;
         observer.level_is_done = [&](const unsigned int   number,
                                      const AdaptiveLevel &level) {
@@ -166,11 +175,14 @@ namespace Debond
             answer.path.result         = std::move(adaptive.solve);
             answer.state.meshes.levels = std::move(adaptive.levels);
             answer.state.shortfall     = adaptive.shortfall;
+            // From here on a restart stays on this mesh.
             answer.state.has_last_mesh = true;
           }
         catch (const BadInput &)
           {
-            // A load that only the finer mesh shows to have no integral.
+            // A load that only the finer mesh shows to have no integral is an
+            // error of the input. It leaves the directory as it was found, like
+            // those that are seen at once.
             output.withdraw();
             throw;
           }
@@ -195,6 +207,8 @@ namespace Debond
               const Verification<dim> &verification,
               const AdhesionIntegral<dim> &) {
             output.add(progress, verification);
+            // A step that went wrong is not saved, so that a restart tries it
+            // again.
             if (!progress.steps.back().message.empty())
               return;
             answer.state.path = progress;
@@ -239,6 +253,8 @@ namespace Debond
         if (is_first_rank())
           print_error(message);
       };
+      // In the order of what the user has to know first: no answer, a search
+      // that was cut short, files that are missing.
       if (!result.is_answer())
         print("NOT CONVERGED (" + result.status + "): " + result.message);
       else if (interrupted)
@@ -272,6 +288,7 @@ namespace Debond
                     {"assembly", answer.scene->assembly_seconds()}};
     choose_linear_solver(*answer.scene, parameters.solver, choice);
     check_supports_of_method(choice, parameters.solver, *answer.scene);
+    // Before the solve, so that nothing is lost if it is not finite somewhere.
     check_exact_displacement(parameters.verification.exact_displacement,
                              *answer.scene);
     Certification<dim> certification(parameters.certificate.kind,
@@ -325,6 +342,8 @@ namespace Debond
     report_result(scene, choice, result, record);
     certification.report(record);
 
+    // The summary comes last and names the cost of all that was written before,
+    // so that whoever finds it knows the run to be complete.
     timer.restart();
     if (output->write(scene, result))
       {

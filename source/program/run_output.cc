@@ -30,10 +30,14 @@ namespace Debond
       if (is_first_rank())
         lock = std::make_unique<DirectoryLock>(output.directory);
     });
+    // The lock comes before anything is removed: another run may be writing to
+    // this directory.
     begin_path(scene);
     remove_files(files(scene, {}), output.directory);
     if (begun == nullptr || begun->path.steps.empty())
       path_output->remove_steps();
+    // An old state would otherwise be taken up by a later --restart that means
+    // this run.
     if (begun == nullptr)
       remove_files({{"restart.state", {}, {}}}, output.directory);
     written.push_back(path("parameters.prm"));

@@ -96,27 +96,6 @@ namespace Debond
 
 
     template <int dim>
-    ErrorEstimate
-    estimate_of(const Scene<dim>            &scene,
-                const AdhesionIntegral<dim> &bonds,
-                const DofVector             &u,
-                const double                 functional,
-                const LoadFactors            factors)
-    {
-      return estimate_error<dim>({scene.problem(),
-                                  bonds,
-                                  scene.conditions(),
-                                  scene.supports(),
-                                  scene.loads(),
-                                  &scene.dead_loads()},
-                                 u,
-                                 functional,
-                                 factors);
-    }
-
-
-
-    template <int dim>
     class AdaptiveLoop
     {
     public:
@@ -271,11 +250,9 @@ namespace Debond
                 // residual of the solver and not the error of the mesh.
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
-                  estimate = estimate_of(*here,
-                                         here->adhesion(),
-                                         solution.u,
-                                         solution.functional,
-                                         1.);
+                  estimate = estimate_error(here->estimated(here->adhesion()),
+                                            solution.u,
+                                            solution.functional);
               }
             else
               {
@@ -365,8 +342,10 @@ namespace Debond
               const AdhesionIntegral<dim> &bonds) {
             observer.step_is_done(progress, verification, bonds);
             const LoadPathStep<dim> &step = progress.steps.back();
-            ErrorEstimate            own  = estimate_of(
-              here, bonds, progress.u, step.state.functional, step.factors());
+            ErrorEstimate            own = estimate_error(here.estimated(bonds),
+                                               progress.u,
+                                               step.state.functional,
+                                               step.factors());
             // Rounding does not choose between steps that are as good.
             if (estimate.cells.empty() ||
                 own.relative() >

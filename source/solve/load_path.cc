@@ -22,6 +22,87 @@ namespace Debond
 {
   namespace
   {
+    /// The table of a path in the log: the factors that vary, J, a number and
+    /// the state.
+    template <int dim>
+    class PathTable
+    {
+    public:
+      PathTable(const LoadPathParameters &parameters, std::ostream *const out)
+        : parameters(parameters)
+        , out(out)
+      {}
+
+      void
+      titles(const std::string &number) const
+      {
+        if (out == nullptr)
+          return;
+        factors<const char *>("factor", "displacement factor");
+        *out << std::setw(17) << "J" << std::setw(14) << number << "  state"
+             << std::endl;
+      }
+
+      void
+      row(const LoadFactors &of_row,
+          const double       functional,
+          const double       number,
+          const std::string &word) const
+      {
+        if (out == nullptr)
+          return;
+        factors(of_row.loads, of_row.displacements);
+        *out << std::scientific << std::setprecision(8) << std::setw(17)
+             << functional << std::defaultfloat << std::setprecision(3)
+             << std::setw(14) << number << std::setprecision(6) << "  " << word
+             << std::endl;
+      }
+
+      void
+      row(const LoadPathStep<dim> &step) const
+      {
+        row(step.factors(),
+            step.state.functional,
+            step.state.broken_part,
+            step.state.minimum.empty() ? step.status : step.state.minimum);
+      }
+
+      /// A row without numbers.
+      void
+      row(const LoadFactors &of_row, const std::string &word) const
+      {
+        if (out == nullptr)
+          return;
+        factors(of_row.loads, of_row.displacements);
+        *out << std::setw(17) << "" << std::setw(14) << ""
+             << "  " << word << std::endl;
+      }
+
+      void
+      section(const std::string &name) const
+      {
+        if (out != nullptr)
+          *out << "  " << name << '\n';
+      }
+
+    private:
+      /// Those that vary, or their titles.
+      template <typename Entry>
+      void
+      factors(const Entry &of_loads, const Entry &of_displacements) const
+      {
+        if (!parameters.moves_only())
+          *out << std::setw(11) << of_loads;
+        if (!parameters.displacement_factors.empty())
+          *out << std::setw(21) << of_displacements;
+      }
+
+      const LoadPathParameters &parameters;
+      std::ostream *const       out;
+    };
+
+
+
     template <int dim>
     class PathFollower
     {
@@ -36,7 +117,7 @@ namespace Debond
         , solver_parameters(settings.parameters)
         , tolerance(settings.tolerance)
         , scene(scene)
-        , out(out)
+        , table(parameters, out)
         , result(start.result)
         , choice(settings.choice)
         , solver(steps.size() < parameters.factors.size() || parameters.arc ||
@@ -55,9 +136,9 @@ namespace Debond
       follow(const LoadPathObserver<dim> &observer)
       {
         timer.restart();
-        print_titles("broken part");
+        table.titles("broken part");
         for (const LoadPathStep<dim> &step : steps)
-          print(step);
+          table.row(step);
         if (!steps.empty())
           go_on(observer);
         while (steps.size() < parameters.factors.size() &&
@@ -71,7 +152,7 @@ namespace Debond
             if (!solve(parameters.at(static_cast<unsigned int>(steps.size())),
                        observer))
               break;
-            print(steps.back());
+            table.row(steps.back());
           }
         result.parts["followed path"] += timer.wall_time();
       }
@@ -119,10 +200,9 @@ namespace Debond
               entry->second = point;
           }
 
-        if (out != nullptr)
-          *out << "  global branch\n";
+        table.section("global branch");
         const bool proves = parameters.global_branch == GlobalBranch::prove;
-        print_titles(proves ? "gap" : "states tried");
+        table.titles(proves ? "gap" : "states tried");
         const Branch branch = global_branch(
           parameters.global_branch,
           solver_parameters,
@@ -130,13 +210,13 @@ namespace Debond
           followed,
           interruption,
           [&](const double factor, const BranchPoint &point) {
-            print(factor,
-                  point.functional +
-                    condensed_scene.at(factor).energy_at_zero(),
-                  proves ?
-                    std::stod(scientific_above(point.which.relative_gap, 2)) :
-                    point.which.search_trials,
-                  to_string(point.which.kind));
+            table.row(
+              factor,
+              point.functional + condensed_scene.at(factor).energy_at_zero(),
+              proves ?
+                std::stod(scientific_above(point.which.relative_gap, 2)) :
+                point.which.search_trials,
+              to_string(point.which.kind));
           });
         for (const auto &[factor, point] : branch)
           add_global(factor, point);
@@ -194,7 +274,10 @@ namespace Debond
         bonds.set_memory(progress.memory);
         if (solver)
           solver->start_from(points.back(), progress.u);
-        observer(progress, verify(factors, bonds, progress.u), bonds);
+        observer(
+          progress,
+          VerifiedState<dim>(scene, bonds, factors, progress.u).verification,
+          bonds);
       }
 
       /// Returns whether there is a next step: not if the body comes off.
@@ -229,27 +312,28 @@ namespace Debond
           }
         add_majorise_result(minimum, result);
         result.message.clear();
-
         if (minimum.status == SolverStatus::comes_off)
           {
             result.comes_off_at = factors;
             result.message      = minimum.message;
-            if (out != nullptr)
-              {
-                print_factors(factors.loads, factors.displacements);
-                *out << std::setw(17) << "" << std::setw(14) << ""
-                     << "  " << to_string(minimum.status) << std::endl;
-              }
+            table.row(factors, to_string(minimum.status));
             return false;
           }
+        add_step(factors, minimum, bonds, observer);
+        return true;
+      }
 
-        LoadPathStep<dim> step;
-        step.step                = static_cast<unsigned int>(steps.size() + 1);
-        step.factor              = factors.loads;
-        step.displacement_factor = factors.displacements;
-        step.iterations = static_cast<unsigned int>(minimum.history.size());
+      /// The step to a minimum. Bonds that do not heal break where it is.
+      void
+      add_step(const LoadFactors            factors,
+               const ContactMinimum        &minimum,
+               AdhesionIntegral<dim>       &bonds,
+               const LoadPathObserver<dim> &observer)
+      {
+        // The first change on the way is one of the bonds as they were before.
+        std::optional<double> change_factor;
         if (!steps.empty() && condensed != nullptr)
-          step.change_factor =
+          change_factor =
             first_bond_change<dim>({scene, *condensed},
                                    bonds,
                                    {steps.back().factors(), points.back()},
@@ -257,29 +341,47 @@ namespace Debond
                                    interruption);
         progress.u = solver->displacement();
         refine(bonds, factors, *solver->correction(), progress.u);
-        const Eigen::VectorXd s = solver->point();
+        points.push_back(solver->point());
         if (!parameters.bonds_heal)
           bonds.break_for_good(scene.contact_trace(progress.u));
         progress.memory = bonds.memory();
-        const Verification<dim> verification =
-          verify(factors, bonds, progress.u);
-        step.state  = state_of(scene, bonds, factors, progress.u, verification);
-        step.status = to_string(minimum.status);
+
+        const VerifiedState<dim> state(scene, bonds, factors, progress.u);
+        LoadPathStep<dim>        step =
+          step_of(state, static_cast<unsigned int>(steps.size() + 1), factors);
+        step.change_factor = change_factor;
+        step.iterations    = static_cast<unsigned int>(minimum.history.size());
+        step.status        = to_string(minimum.status);
         // Only bonds that soften ask for S and g there.
         std::optional<Condensation> at_step;
         if (condensed != nullptr && bonds.softens())
           at_step = CondensedScene<dim>{scene, *condensed}.at(factors);
-        kinds.push_back(
-          kind_without_search(bonds, s, at_step ? &*at_step : nullptr));
+        kinds.push_back(kind_without_search(bonds,
+                                            points.back(),
+                                            at_step ? &*at_step : nullptr));
+        judge(minimum, state.verification, step);
+        steps.push_back(step);
+        observer(progress, state.verification, bonds);
+      }
+
+      /// Status and message of a step, by what the solver and the verification
+      /// say. Where rounding kept the solver from its tolerance the
+      /// verification decides.
+      void
+      judge(const ContactMinimum    &minimum,
+            const Verification<dim> &verification,
+            LoadPathStep<dim>       &step)
+      {
+        const std::string own = location(step) + minimum.message;
         if (!can_be_verified(minimum.status))
-          step.message = result.message = location(step) + minimum.message;
+          step.message = result.message = own;
         else if (!is_verified(verification))
           {
             step.message = location(step) + failure(verification);
             if (minimum.status == SolverStatus::success)
               step.status = "not verified";
             else
-              result.message = location(step) + minimum.message;
+              result.message = own;
           }
         else
           {
@@ -289,13 +391,9 @@ namespace Debond
                 result.status = SolverStatus::success;
                 step.status   = to_string(result.status);
                 if (result.notes.empty())
-                  result.notes.push_back(location(step) + minimum.message);
+                  result.notes.push_back(own);
               }
           }
-        points.push_back(s);
-        steps.push_back(step);
-        observer(progress, verification, bonds);
-        return true;
       }
 
       void
@@ -309,15 +407,6 @@ namespace Debond
         result.is_refined = refined.is_refined;
         if (!refined.note.empty() && result.notes.empty())
           result.notes.push_back(refined.note);
-      }
-
-      Verification<dim>
-      verify(const LoadFactors            factors,
-             const AdhesionIntegral<dim> &bonds_there,
-             const DofVector             &u) const
-      {
-        return Debond::verify(
-          scene.problem(), bonds_there, scene.law(), u, factors);
       }
 
       bool
@@ -346,10 +435,9 @@ namespace Debond
         const AdhesionIntegral<dim> bonds_there = condensed_scene.bonds(factor);
         DofVector u = condensed_scene.at(factor).expand(point.s);
         refine(bonds_there, factor, *solver->correction(), u);
-        const Verification<dim> verification = verify(factor, bonds_there, u);
-        LoadPathState<dim>      global =
-          state_of(scene, bonds_there, factor, u, verification);
-        const bool verified = is_verified(verification);
+        VerifiedState<dim>  state(scene, bonds_there, factor, u);
+        LoadPathState<dim> &global   = state.state;
+        const bool          verified = is_verified(state.verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
         for (unsigned int k = 0; k < steps.size(); ++k)
@@ -360,8 +448,8 @@ namespace Debond
               if (point.which.proof_attempted)
                 step.relative_gap = point.which.relative_gap;
               if (!verified && step.message.empty())
-                step.message =
-                  location(step) + "global branch: " + failure(verification);
+                step.message = location(step) +
+                               "global branch: " + failure(state.verification);
               // The followed state is this one, or as good.
               if (step.message.empty() &&
                   step.state.functional <=
@@ -381,56 +469,11 @@ namespace Debond
         result.message = location(steps.back()) + "interrupted, " + what;
       }
 
-      void
-      print_titles(const std::string &third) const
-      {
-        if (out == nullptr)
-          return;
-        print_factors<const char *>("factor", "displacement factor");
-        *out << std::setw(17) << "J" << std::setw(14) << third << "  state"
-             << std::endl;
-      }
-
-      /// Those that vary, or their titles.
-      template <typename Entry>
-      void
-      print_factors(const Entry &of_loads, const Entry &of_displacements) const
-      {
-        if (!parameters.moves_only())
-          *out << std::setw(11) << of_loads;
-        if (!parameters.displacement_factors.empty())
-          *out << std::setw(21) << of_displacements;
-      }
-
-      void
-      print(const LoadPathStep<dim> &step) const
-      {
-        print(step.factors(),
-              step.state.functional,
-              step.state.broken_part,
-              step.state.minimum.empty() ? step.status : step.state.minimum);
-      }
-
-      void
-      print(const LoadFactors &factors,
-            const double       functional,
-            const double       number,
-            const std::string &word) const
-      {
-        if (out == nullptr)
-          return;
-        print_factors(factors.loads, factors.displacements);
-        *out << std::scientific << std::setprecision(8) << std::setw(17)
-             << functional << std::defaultfloat << std::setprecision(3)
-             << std::setw(14) << number << std::setprecision(6) << "  " << word
-             << std::endl;
-      }
-
       const LoadPathParameters &parameters;
       const SolverParameters   &solver_parameters;
       const double              tolerance; ///< of the verification
       const Scene<dim>         &scene;
-      std::ostream             *out;
+      const PathTable<dim>      table;
       const Interruption       &interruption = Interruption::by_signal();
       dealii::Timer             timer;
       SolveResult               result;

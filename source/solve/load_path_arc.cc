@@ -126,21 +126,19 @@ namespace Debond
       const DofVector u =
         at_factors(scene.condensed, scene.scene.problem(), here, factors)
           .expand(path.point());
-      const Verification<dim> verification =
-        verify(scene.scene.problem(), here, scene.scene.law(), u, factors);
-      LoadPathStep<dim> step = {};
-      step.step = static_cast<unsigned int>(arc.steps.size() + 1);
-      step.factor              = factors.loads;
-      step.displacement_factor = factors.displacements;
+      const VerifiedState<dim> state(scene.scene, here, factors, u);
+      LoadPathStep<dim>        step =
+        step_of(state,
+                static_cast<unsigned int>(arc.steps.size() + 1),
+                factors);
       step.status = is_stable ? "stable" : "unstable";
-      step.state = state_of(scene.scene, here, factors, u, verification);
       // Each state is verified like a result. One that fails is still listed,
       // so that the user sees where the arc was lost.
-      if (!(verification.error() <= tolerance))
+      if (!(state.verification.error() <= tolerance))
         {
           step.status = "not verified";
           arc.note = "The arc ends: " + location(parameters, step) +
-                     verification.failure(tolerance);
+                     state.verification.failure(tolerance);
         }
       arc.steps.push_back(step);
       return step.status != "not verified";

@@ -19,15 +19,13 @@ namespace Debond
 
 
   template <int dim>
-  LoadPathState<dim>
-  state_of(const Scene<dim>            &scene,
-           const AdhesionIntegral<dim> &bonds,
-           const LoadFactors            factors,
-           const DofVector             &u,
-           const Verification<dim>     &verification)
+  VerifiedState<dim>::VerifiedState(const Scene<dim>            &scene,
+                                    const AdhesionIntegral<dim> &bonds,
+                                    const LoadFactors            factors,
+                                    const DofVector             &u)
+    : verification(verify(scene.problem(), bonds, u, factors))
+    , state(load_path_state(scene.problem(), bonds, factors, u, verification))
   {
-    LoadPathState<dim> state =
-      load_path_state(scene.problem(), bonds, factors, u, verification);
     const auto add = [&](const std::string &kind, const Probes<dim> &probes) {
       for (const auto &[name, vector] :
            probes.values(scene.problem(), u, factors))
@@ -35,7 +33,22 @@ namespace Debond
     };
     add("mean_", scene.means());
     add("probe_", scene.probes());
-    return state;
+  }
+
+
+
+  template <int dim>
+  LoadPathStep<dim>
+  step_of(const VerifiedState<dim> &state,
+          const unsigned int        k,
+          const LoadFactors         factors)
+  {
+    LoadPathStep<dim> step   = {};
+    step.step                = k;
+    step.factor              = factors.loads;
+    step.displacement_factor = factors.displacements;
+    step.state               = state.state;
+    return step;
   }
 
 
@@ -88,10 +101,12 @@ namespace Debond
   }
 
 
-  template decltype(location<2>)         location<2>;
-  template decltype(location<3>)         location<3>;
-  template decltype(state_of<2>)         state_of<2>;
-  template decltype(state_of<3>)         state_of<3>;
+  template decltype(location<2>) location<2>;
+  template decltype(location<3>) location<3>;
+  template decltype(step_of<2>)  step_of<2>;
+  template decltype(step_of<3>)  step_of<3>;
+  template struct VerifiedState<2>;
+  template struct VerifiedState<3>;
   template decltype(load_path_totals<2>) load_path_totals<2>;
   template decltype(load_path_totals<3>) load_path_totals<3>;
 } // namespace Debond

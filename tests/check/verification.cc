@@ -98,7 +98,7 @@ namespace
         ContactQuadratureParameters::parse(rule));
       const AdhesionIntegral<dim> adhesion(
         problem->unknowns().contact().boundary(), law, quadrature);
-      return verify(*problem, adhesion, law, u);
+      return verify(*problem, adhesion, u);
     }
   };
 

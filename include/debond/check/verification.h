@@ -166,7 +166,8 @@ namespace Debond
     name(const BondState state) const;
   };
 
-  /// @p factors: the multiple of the problem's loads that @p u belongs to.
+  /// Verifies @p u, which belongs to @p factors of the problem's loads and to
+  /// bonds that are as @p adhesion has them.
   ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
   /// largest |u_nu|) of 0 and the kinks count as
@@ -178,7 +179,6 @@ namespace Debond
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,
          const AdhesionIntegral<dim> &adhesion,
-         const AdhesiveLaw           &law,
          const DofVector             &u,
          const LoadFactors            factors   = 1.,
          const double                 tolerance = Tolerance::contact_law);

@@ -50,15 +50,27 @@ namespace Debond
   std::string
   location(const LoadPathParameters &parameters, const LoadPathStep<dim> &step);
 
-  /// In numbers, with the vectors that the scene asks for. As
-  /// load_path_state().
+  /// A state of the load path in numbers, with the vectors that the scene asks
+  /// for, and its verification. To be made by all ranks.
   template <int dim>
-  LoadPathState<dim>
-  state_of(const Scene<dim>            &scene,
-           const AdhesionIntegral<dim> &bonds,
-           const LoadFactors            factors,
-           const DofVector             &u,
-           const Verification<dim>     &verification);
+  struct VerifiedState
+  {
+    /// @p bonds are as the path has left them at these @p factors.
+    VerifiedState(const Scene<dim>            &scene,
+                  const AdhesionIntegral<dim> &bonds,
+                  const LoadFactors            factors,
+                  const DofVector             &u);
+
+    Verification<dim>  verification;
+    LoadPathState<dim> state;
+  };
+
+  /// The step number @p k, from 1, to this state.
+  template <int dim>
+  LoadPathStep<dim>
+  step_of(const VerifiedState<dim> &state,
+          const unsigned int        k,
+          const LoadFactors         factors);
 
 
 

@@ -3,6 +3,7 @@
 #define debond_solve_scene_h
 
 #include <debond/base/dof_vector.h>
+#include <debond/check/error_estimate.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/probes.h>
 #include <debond/input/problem_parameters.h>
@@ -125,6 +126,18 @@ namespace Debond
     adhesion() const
     {
       return *adhesion_integral;
+    }
+
+    /// What the error is estimated of, with bonds that a load path has left.
+    EstimatedProblem<dim>
+    estimated(const AdhesionIntegral<dim> &bonds) const
+    {
+      return {*elastic_problem,
+              bonds,
+              boundary_conditions,
+              body_supports,
+              body_loads,
+              &body_dead_loads};
     }
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
