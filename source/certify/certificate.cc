@@ -58,7 +58,7 @@ namespace Debond
                 const dealii::types::boundary_id           id,
                 const Scene<dim>                          &scene)
     {
-      const PiecewiseEnergy &law = scene.law().branches();
+      const PiecewiseEnergy &law = scene.law().pieces();
       if (!scene.adhesion().points().has_field())
         return law;
       // Theorem 1 has one law for each side, whose mean stands for all its
@@ -162,7 +162,7 @@ namespace Debond
                       const AdhesiveLaw                  &whole)
     {
       std::vector<CertifiedLength> lengths;
-      for (unsigned int k = 0; k < whole.branches().size(); ++k)
+      for (unsigned int k = 0; k < whole.pieces().size(); ++k)
         {
           // A side counts for the least length of a state if its piece is
           // certain, and for the largest one if its interval meets the piece at
@@ -174,9 +174,9 @@ namespace Debond
               const PiecewiseEnergy &law  = laws[i];
               const double measure        = side.ends[0].distance(side.ends[1]);
               // Without bonds all of them are broken.
-              if (law.size() < whole.branches().size())
+              if (law.size() < whole.pieces().size())
                 {
-                  if (k + 1 == whole.branches().size())
+                  if (k + 1 == whole.pieces().size())
                     {
                       length.largest += measure;
                       length.least += measure;
@@ -465,7 +465,7 @@ namespace Debond
                             const std::shared_ptr<const Scene<dim>> &scene)
     : scene(scene)
     , minimum(kind == CertificateKind::global ||
-                  scene->law().branches().size() == 1 ?
+                  scene->law().pieces().size() == 1 ?
                 CertifiedMinimum::global :
                 CertifiedMinimum::fixed_state)
     , equilibrium(equilibrium_problem(*scene))
@@ -476,7 +476,7 @@ namespace Debond
       laws.push_back(law_of_side<dim>(side.corners, side.id, *scene));
     if constexpr (dim == 2)
       if (minimum == CertifiedMinimum::global &&
-          scene->law().branches().size() > 1)
+          scene->law().pieces().size() > 1)
         trace_constants =
           side_constants(equilibrium, scene->materials(), scene->conditions());
   }

@@ -179,7 +179,11 @@ namespace Debond
         problems.mean_problem(known.sides, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
-                         {problem->S, problem->g, *problem->phi, interruption},
+                         {problem->S,
+                          problem->g,
+                          Eigen::VectorXd::Zero(problem->g.size()),
+                          *problem->phi,
+                          interruption},
                          given_means(problem->kept));
       known.nodes += bound.nodes;
       const double lower =

@@ -24,7 +24,7 @@ namespace Debond
     /// far from a mean as a tenth of the distance of the first kink.
     double
     largest_loss(const PiecewiseEnergy &law,
-                 const RoundedBranches &rounded,
+                 const RoundedEnergy   &rounded,
                  const double           mean)
     {
       const PiecewiseEnergy own    = rounded.minimum();
@@ -136,7 +136,7 @@ namespace Debond
         double                 D       = 0.02 * law[0].curvature;
         // D is just so large that the result's mean is not where the envelope
         // differs from the law: then nothing is lost there.
-        while (D < largest && RoundedBranches(law, D).is_rounded_near(means(i)))
+        while (D < largest && RoundedEnergy(law, D).is_rounded_near(means(i)))
           D *= 1.25;
         shifts.push_back(std::min({D, largest, available(i)}));
       }
@@ -166,8 +166,8 @@ namespace Debond
         double       least    = std::numeric_limits<double>::infinity();
         for (double D = best; D < available(i); D *= 1.2)
           {
-            const RoundedBranches rounded(law, D);
-            const bool            is_certain =
+            const RoundedEnergy rounded(law, D);
+            const bool          is_certain =
               rounded.exact_piece(ranges[i].linear()).has_value();
             if (!is_certain && D > largest_uncertain_shift * a)
               continue;
@@ -183,7 +183,7 @@ namespace Debond
             if (is_certain)
               break;
           }
-        if (!RoundedBranches(law, best).exact_piece(ranges[i].linear()))
+        if (!RoundedEnergy(law, best).exact_piece(ranges[i].linear()))
           best = std::max(best, least_multiple * a);
         shifts.push_back(std::min(best, available(i)));
       }
@@ -209,7 +209,7 @@ namespace Debond
         const PiecewiseEnergy &law = laws[i];
         const double           s   = std::min(means_and_slopes(i), 0.);
         const double           k   = means_and_slopes(n + i);
-        const double rounded       = RoundedBranches(law, D).minimum().value(s);
+        const double rounded       = RoundedEnergy(law, D).minimum().value(s);
         const double c             = law[law.index(s)].curvature;
         result.back() +=
           sides[i].measure * (law.value(s) - rounded + (c + D) * k * k / 6.);
@@ -288,7 +288,7 @@ namespace Debond
       {
         const double             length = sides[i].measure;
         const PiecewiseEnergy   &law    = laws[i];
-        const RoundedBranches    rounded(law, D[i]);
+        const RoundedEnergy      rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
         // By Theorem 2 a side whose range is on one piece has a quadratic term
@@ -339,7 +339,7 @@ namespace Debond
 
     if (!eliminate(A, b, result))
       return {};
-    result.phi = std::make_unique<SeparableBranches>(kept_laws);
+    result.phi = std::make_unique<SeparableEnergy>(kept_laws);
 
     // The reserve for rounding is measured at the result, where the bound is to
     // be tight.

@@ -138,7 +138,10 @@ namespace Debond
     // around it. More boxes give smaller ellipsoids, and their union is the
     // range.
     const double           best = upper - problem.constant + problem.rounding;
-    const NodeBound        bound(problem.S, problem.g, *problem.phi);
+    const NodeBound        bound({problem.S,
+                                  problem.g,
+                                  Eigen::VectorXd::Zero(problem.g.size()),
+                                  *problem.phi});
     std::vector<ProofNode> open;
     if (auto root = bound.root(best))
       {

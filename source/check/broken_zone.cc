@@ -102,7 +102,7 @@ namespace Debond
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s)
   {
-    const unsigned int last = law.branches().size() - 1;
+    const unsigned int last = law.pieces().size() - 1;
     // Bonds that hold at any distance are never broken.
     if (!law.is_loose(last))
       return 0.;
@@ -117,7 +117,7 @@ namespace Debond
         const auto threshold = [&](const std::array<double, dim> &coordinates) {
           const BondScale bonds = adhesion.points().bonds_at(face, coordinates);
           return bonds.energy == 0. ||
-                     law.branches().index(
+                     law.pieces().index(
                        adhesion.reached_at(face, coordinates)) == last ?
                    0. :
                    law.bond_threshold() * bonds.stretch;
@@ -162,7 +162,7 @@ namespace Debond
          const VectorView            &s)
   {
     std::vector<dealii::Point<dim>> result;
-    const unsigned int              last = law.branches().size() - 1;
+    const unsigned int              last = law.pieces().size() - 1;
     if (dim != 2 || last == 0 || !law.is_loose(last))
       return result;
     // Bonds next to a vertex: 0 if there are none, 2 if they hold.
@@ -180,7 +180,7 @@ namespace Debond
             beyond[k] = -trace[k] - law.bond_threshold() * bonds.stretch;
             grip[k] =
               bonds.energy == 0. ||
-                  law.branches().index(adhesion.reached_at(face, k)) == last ?
+                  law.pieces().index(adhesion.reached_at(face, k)) == last ?
                 0 :
               beyond[k] < 0. ? 2 :
                                1;

@@ -49,7 +49,7 @@ namespace Debond
   {
     constexpr double   infinity = std::numeric_limits<double>::infinity();
     const AdhesiveLaw &law      = adhesion.adhesive_law();
-    const double       energy   = law.branches().largest_value();
+    const double       energy   = law.pieces().largest_value();
     if (!law.softens() || !std::isfinite(energy))
       return infinity;
 

@@ -17,7 +17,7 @@ namespace Debond
   {
     std::vector<std::string> names = {
       "contact", "bonded", "kink", "broken", "free", "held"};
-    for (unsigned int k = 0; k < law.branches().size(); ++k)
+    for (unsigned int k = 0; k < law.pieces().size(); ++k)
       if (std::find(names.begin(), names.end(), law.name(k)) == names.end())
         names.push_back(law.name(k));
     return names;
@@ -99,7 +99,7 @@ namespace Debond
     double
     first_threshold(const AdhesiveLaw &law)
     {
-      return law.branches().size() > 1 ? -law.branches()[1].upper : 0.;
+      return law.pieces().size() > 1 ? -law.pieces()[1].upper : 0.;
     }
 
 
@@ -164,7 +164,7 @@ namespace Debond
               Verification<dim>           &result)
     {
       const AdhesiveLaw     &law         = adhesion.adhesive_law();
-      const PiecewiseEnergy &branches    = law.branches();
+      const PiecewiseEnergy &branches    = law.pieces();
       const BondScale        bonds       = adhesion.points().bonds_at(i);
       const unsigned int     least_piece = adhesion.least_piece(i);
       ContactNodeState      &node        = result.nodes[i];

@@ -24,6 +24,7 @@ namespace Debond
   AdhesionIntegral<dim>
   AdhesionIntegral<dim>::at(const double factor) const
   {
+    // The memory stays: the points are the same at each factor.
     AdhesionIntegral result(*this);
     result.contact_points.set_factor(factor);
     result.update();
@@ -64,6 +65,8 @@ namespace Debond
       return;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_nodes());
     phi_at_zero                = value(zero);
+    // The largest memory around a node: a node counts as broken where all bonds
+    // around it are.
     reached_of_nodes.assign(n_nodes(), -std::numeric_limits<double>::max());
     for_each_point(zero, [&](const auto &point, double, double reached) {
       for (unsigned int k = 0; k < point.n_nodes; ++k)
@@ -150,7 +153,7 @@ namespace Debond
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       if (point.bonds.energy > 0.)
         first = std::min(first,
-                         law.branches()
+                         law.pieces()
                            .piece_at(stretch, reached)
                            .way_to_end(stretch,
                                        point.stretch(ds) -
@@ -173,7 +176,9 @@ namespace Debond
       for (unsigned int k = 0; k < point.n_nodes; ++k)
         {
           const unsigned int node = point.index[k];
-          const Interval     traction =
+          // Each node's radius is that of its own force: how far s may be wrong
+          // differs from node to node.
+          const Interval traction =
             law.goldstein_interval(stretch,
                                    delta[node] / point.bonds.stretch,
                                    reached);

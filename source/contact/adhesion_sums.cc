@@ -10,7 +10,7 @@ namespace Debond
   double
   open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
-    const PiecewiseEnergy &pieces = phi.adhesive_law().branches();
+    const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     double                 sum    = 0.;
     phi.for_each_point(s,
                        [&](const auto &point, double stretch, double reached) {
@@ -81,7 +81,7 @@ namespace Debond
              const VectorView            &s,
              const double                 part)
   {
-    const PiecewiseEnergy &pieces = phi.adhesive_law().branches();
+    const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     bool                   is_at  = false;
     phi.for_each_point(s,
                        [&](const auto &point, double stretch, double reached) {

@@ -47,6 +47,8 @@ namespace Debond
     // What has no bonds breaks nowhere.
     if (a_here == 0.)
       return {0., 1.};
+    // j of stiffness a and threshold M becomes energy j(s / stretch) of
+    // stiffness energy a / stretch^2 and threshold stretch M.
     const double stretch = bond_value<dim>(bonds, M, point, true) / M;
     return {a_here / a * stretch * stretch, stretch};
   }

@@ -2,12 +2,15 @@
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
 
+#include <algorithm>
 #include <set>
 
 namespace Debond
 {
   namespace
   {
+    constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
+
     template <int dim>
     struct NodeGraph
     {
@@ -17,37 +20,25 @@ namespace Debond
 
 
 
-    template <int dim>
-    NodeGraph<dim>
-    node_graph(const ContactBoundary<dim> &boundary)
-    {
-      NodeGraph<dim> graph;
-      for (const auto &node : boundary.nodes)
-        graph.positions.push_back(node.position);
-      graph.neighbours = neighbours(boundary);
-      return graph;
-    }
-
-
-
     /// A maximal set of nodes without neighbours among them: the number of
-    /// each in the set, or invalid_unsigned_int.
+    /// each in the set, or none. Returns how many there are.
     template <int dim>
-    std::vector<unsigned int>
-    independent_set(const NodeGraph<dim> &graph)
+    unsigned int
+    independent_set(const NodeGraph<dim>      &graph,
+                    std::vector<unsigned int> &number)
     {
-      std::vector<unsigned int> number(graph.positions.size(),
-                                       dealii::numbers::invalid_unsigned_int);
-      unsigned int              n_kept = 0;
+      // In the order of the nodes, which is that of their positions: of an
+      // interval every second node is kept.
+      unsigned int n_kept = 0;
+      number.assign(graph.positions.size(), none);
       for (unsigned int i = 0; i < number.size(); ++i)
-        {
-          bool free = true;
-          for (const unsigned int j : graph.neighbours[i])
-            free = free && number[j] == dealii::numbers::invalid_unsigned_int;
-          if (free)
-            number[i] = n_kept++;
-        }
-      return number;
+        if (std::all_of(graph.neighbours[i].begin(),
+                        graph.neighbours[i].end(),
+                        [&](const unsigned int j) {
+                          return number[j] == none;
+                        }))
+          number[i] = n_kept++;
+      return n_kept;
     }
 
 
@@ -61,21 +52,25 @@ namespace Debond
       std::vector<Eigen::Triplet<double>> entries;
       for (unsigned int i = 0; i < number.size(); ++i)
         {
-          if (number[i] != dealii::numbers::invalid_unsigned_int)
+          if (number[i] != none)
             {
               entries.emplace_back(i, number[i], 1.);
               continue;
             }
+          // A node that goes has a neighbour that is kept, as the set is
+          // maximal. It is interpolated between these by the inverse of their
+          // distances: in 2D linearly.
+          const auto closeness = [&](const unsigned int j) {
+            return number[j] == none ?
+                     0. :
+                     1. / graph.positions[i].distance(graph.positions[j]);
+          };
           double sum = 0.;
           for (const unsigned int j : graph.neighbours[i])
-            if (number[j] != dealii::numbers::invalid_unsigned_int)
-              sum += 1. / graph.positions[i].distance(graph.positions[j]);
+            sum += closeness(j);
           for (const unsigned int j : graph.neighbours[i])
-            if (number[j] != dealii::numbers::invalid_unsigned_int)
-              entries.emplace_back(i,
-                                   number[j],
-                                   1. / (sum * graph.positions[i].distance(
-                                                 graph.positions[j])));
+            if (number[j] != none)
+              entries.emplace_back(i, number[j], closeness(j) / sum);
         }
       Eigen::SparseMatrix<double> P(number.size(), n_kept);
       P.setFromTriplets(entries.begin(), entries.end());
@@ -91,8 +86,7 @@ namespace Debond
                  const std::vector<unsigned int> &number,
                  const unsigned int               n_kept)
     {
-      constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
-      NodeGraph<dim>         coarse;
+      NodeGraph<dim> coarse;
       coarse.neighbours.resize(n_kept);
       for (unsigned int i = 0; i < number.size(); ++i)
         if (number[i] != none)
@@ -113,13 +107,15 @@ namespace Debond
   coarsen(const ContactBoundary<dim> &boundary, const unsigned int coarsest)
   {
     std::vector<Eigen::SparseMatrix<double>> prolongations;
-    NodeGraph<dim>                           graph = node_graph(boundary);
+    std::vector<unsigned int>                number;
+    NodeGraph<dim>                           graph = {{}, neighbours(boundary)};
+    for (const auto &node : boundary.nodes)
+      graph.positions.push_back(node.position);
     while (graph.positions.size() > coarsest)
       {
-        const std::vector<unsigned int> number = independent_set(graph);
-        unsigned int                    n_kept = 0;
-        for (const unsigned int n : number)
-          n_kept += n != dealii::numbers::invalid_unsigned_int;
+        // The set of each level is one on the graph of the level before, so
+        // that meshes of any kind are coarsened.
+        const unsigned int n_kept = independent_set(graph, number);
         // Nodes without neighbours are all kept.
         if (n_kept == number.size())
           break;

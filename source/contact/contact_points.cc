@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/contact_points.h>
+#include <debond/optimization/interval.h>
 
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -15,6 +15,8 @@ namespace Debond
     , quadrature(quadrature_rule)
     , field(bond_field)
   {
+    // Nodes need their mean bonds whatever the quadrature is: checks of nodes
+    // scale by them.
     collect_bonds();
     collect_points();
   }
@@ -25,6 +27,7 @@ namespace Debond
   void
   ContactPoints<dim>::set_factor(const double factor)
   {
+    // Without held vertices nothing in the points depends on the load.
     load_factor = factor;
     if (!contact.held_vertices.empty())
       collect_points();
@@ -114,6 +117,8 @@ namespace Debond
             point.shape[point.n_entries] = shape[k];
             ++point.n_entries;
           };
+          // Unknowns first, then what is held, whose forces held_forces() asks
+          // for.
           for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
             if (!face.is_held(k) && shape[k] != 0.)
               add(face.node(k), k);
@@ -152,7 +157,7 @@ namespace Debond
     // vertices.
     const auto  &rule  = quadrature.points();
     unsigned int next  = 0;
-    double       least = std::numeric_limits<double>::infinity();
+    double       least = infinity;
     for (unsigned int q = 0; q < rule.size(); ++q)
       {
         double sum = 0.;
@@ -165,6 +170,7 @@ namespace Debond
             next  = q;
           }
       }
+    // Faces are in one array, and all have the points of the rule in its order.
     return places[(&face - contact.faces.data()) * rule.size() + next];
   }
 

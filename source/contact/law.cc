@@ -23,7 +23,9 @@ namespace Debond
     for (unsigned int k = 0; k < minimum.size(); ++k)
       {
         const PiecewiseEnergy::Piece &piece = minimum[k];
-        const double                  lower =
+        // A law pulls at all s < 0. The derivative of a piece is monotone, so
+        // that its ends say it; of the last piece any point further down does.
+        const double lower =
           std::isfinite(piece.lower) ? piece.lower : 2. * piece.upper;
         // Of steep pieces far from 0 the terms of the derivative cancel.
         const double rounding =
@@ -76,6 +78,7 @@ namespace Debond
   double
   AdhesiveLaw::curvature(const double s, const double reached) const
   {
+    // Above 0 there is no law unless bonds have been stretched before.
     return s > 0. && reached == 0. ? 0. :
                                      minimum.majorant_curvature(s, reached);
   }
@@ -141,6 +144,8 @@ namespace Debond
   double
   AdhesiveLaw::damage(const double reached) const
   {
+    // The secant stiffness at reached beside that at 0; bonds that are rigid at
+    // first lose traction in place of stiffness.
     const PiecewiseEnergy::Piece first = minimum[0];
     const double pull = minimum.piece_at(reached, 0.).derivative(reached);
     if (!(reached < 0.) || first.is_flat())
@@ -157,6 +162,8 @@ namespace Debond
   AdhesiveLaw::kinks() const
   {
     std::vector<double> result;
+    // From the last piece upwards; at 0 there is a kink if bonds pull or are
+    // stiff there, for above it there is nothing.
     for (unsigned int k = minimum.size() - 1; k > 0; --k)
       result.push_back(minimum[k].upper);
     if (!is_loose(0))
@@ -166,34 +173,11 @@ namespace Debond
 
 
 
-  const PiecewiseEnergy &
-  AdhesiveLaw::branches() const
-  {
-    return minimum;
-  }
-
-
-
-  const std::string &
-  AdhesiveLaw::name(const unsigned int piece) const
-  {
-    return names[piece];
-  }
-
-
-
-  bool
-  AdhesiveLaw::is_loose(const unsigned int piece) const
-  {
-    return minimum[piece].is_flat();
-  }
-
-
-
   bool
   AdhesiveLaw::lets_go() const
   {
     const PiecewiseEnergy::Piece &last = minimum[minimum.size() - 1];
+    // What decays holds nothing where it has decayed.
     return last.is_flat() || last.decay > 0.;
   }
 
@@ -210,6 +194,7 @@ namespace Debond
   double
   AdhesiveLaw::bond_strength() const
   {
+    // Tractions rise to the kinks, as the pieces are monotone between them.
     double strength = 0.;
     for (const double kink : kinks())
       strength = std::max(strength, -clarke_interval(kink).lower);
@@ -268,6 +253,8 @@ namespace Debond
   void
   LawSection::bind(ParameterTable &table)
   {
+    // Every kind binds its entries, whichever is chosen: what belongs to the
+    // others is told in make_law().
     std::vector<std::string> descriptions;
     for (const LawKind &kind : kinds())
       descriptions.push_back(kind.name + " " + kind.description);
@@ -290,6 +277,8 @@ namespace Debond
     for (const LawKind &kind : kinds())
       if (kind.name == name)
         own = names_in(kind.entries);
+    // Entries that only other kinds have, with these kinds: whoever gives one
+    // expects an effect of it.
     std::map<std::string, std::vector<std::string>> laws_of;
     for (const LawKind &kind : kinds())
       for (const std::string &entry : names_in(kind.entries))

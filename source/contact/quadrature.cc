@@ -25,6 +25,8 @@ namespace Debond
     std::vector<typename ContactQuadrature<dim>::QuadraturePoint>
     in_barycentric_coordinates(const dealii::Quadrature<dim - 1> &rule)
     {
+      // On the reference simplex the weights sum to its measure, 1 or 1/2; here
+      // to 1, as faces have their own measure.
       double sum = 0.;
       for (const double weight : rule.get_weights())
         sum += weight;
@@ -33,7 +35,9 @@ namespace Debond
         rule.size());
       for (unsigned int q = 0; q < rule.size(); ++q)
         {
-          points[q].weight         = rule.weight(q) / sum;
+          points[q].weight = rule.weight(q) / sum;
+          // deal.II's coordinates of the reference simplex are the barycentric
+          // ones of all vertices but the first.
           points[q].barycentric[0] = 1.;
           for (unsigned int k = 1; k < dim; ++k)
             {
@@ -74,6 +78,8 @@ namespace Debond
       using Rule            = ContactQuadratureParameters::Rule;
       using QuadraturePoint = typename ContactQuadrature<dim>::QuadraturePoint;
 
+      // The vertices alone do not see what an edge's coefficient does, and sums
+      // over them would leave it without bonds.
       if (degree == 2 && parameters.rule != Rule::gauss)
         throw std::invalid_argument(
           "quadratic displacements (Mesh/Degree = 2) need \"gauss N\"");
@@ -121,6 +127,8 @@ namespace Debond
           text.compare(0, gauss_prefix.size(), gauss_prefix) == 0 ?
             text.substr(gauss_prefix.size()) :
             "";
+        // One or two digits without a leading zero, which std::stoul would not
+        // insist on.
         const bool valid =
           (number.size() == 1 || number.size() == 2) && number[0] != '0' &&
           number.find_first_not_of("0123456789") == std::string::npos;

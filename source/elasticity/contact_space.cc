@@ -2,7 +2,6 @@
 #include <debond/elasticity/contact_space.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace Debond
 {
@@ -70,17 +69,6 @@ namespace Debond
     for (unsigned int i = 0; i < size(); ++i)
       s(i) = std::min(0., -nodes_and_faces.nodes[i].gap);
     return s;
-  }
-
-
-
-  template <int dim>
-  ContactSpace<dim>
-  ContactSpace<dim>::condensed() const
-  {
-    std::vector<dealii::types::global_dof_index> all(size());
-    std::iota(all.begin(), all.end(), 0u);
-    return ContactSpace(nodes_and_faces, all);
   }
 
 

@@ -337,7 +337,7 @@ namespace Debond
       const std::string quadratic =
         "needs a law of straight lines, not Law = exponential";
       const bool decays =
-        !AdhesiveLaw(p.law.pieces).branches().is_piecewise_quadratic();
+        !AdhesiveLaw(p.law.pieces).pieces().is_piecewise_quadratic();
       refuse(
         {{p.solver.prove && decays, "Solver/Prove", quadratic},
          {p.load_path.global_branch == GlobalBranch::prove && decays,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -41,7 +40,8 @@ namespace Debond
   Growth::least(const Interval &interval) const
   {
     if (interval.is_empty())
-      return std::numeric_limits<double>::infinity();
+      return infinity;
+    // A parabola that is not convex is least at an end.
     if (!(curvature > 0.))
       return std::min(value(interval.lower), value(interval.upper));
     return value(std::min(std::max(x - slope / curvature, interval.lower),
@@ -58,6 +58,8 @@ namespace Debond
     // What is concave is low at the ends.
     if (!(curvature > 0.))
       return interval;
+    // constant + slope d + curvature/2 d^2 <= level within the roots about the
+    // minimum, at d = centre.
     const double centre = -slope / curvature;
     const double radius =
       std::sqrt(

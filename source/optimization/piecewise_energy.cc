@@ -10,7 +10,6 @@ namespace Debond
 {
   namespace
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
 
     /// Where nothing is left of what decays, in terms of the length in which it
     /// does so by e.
@@ -30,6 +29,7 @@ namespace Debond
         return {0., 0.};
       // Of other less the tangent of own at s, h + b x + c/2 x^2: about 0, as
       // brittle bonds are next to 0, seen from far.
+      // The tangent of own at s is force x + at_zero.
       const long double force =
         own.decay > 0. ?
           static_cast<long double>(own.derivative(s)) :
@@ -42,6 +42,10 @@ namespace Debond
       const auto difference = [&](const long double x) {
         return h + x * (b + 0.5L * c * x);
       };
+      // A quadratic that touches own at s with the curvature k is the tangent
+      // and k/2 (x - s)^2. It meets other at x if k = 2 difference(x) / (x -
+      // s)^2, so that the largest and the least k are at the ends of other or
+      // where this is stationary.
       Interval   result = {infinity, -infinity};
       const auto meet   = [&](const long double curvature) {
         result = hull(result,
@@ -57,6 +61,9 @@ namespace Debond
             const long double distance = static_cast<long double>(end) - s;
             meet(2.L * difference(end) / (distance * distance));
           }
+      // Written about s the difference is at_s + slope y + c/2 y^2, and 2
+      // difference / y^2 is stationary at y = -2 at_s / slope, with the value c
+      // - slope^2 / (2 at_s).
       const long double at_s = difference(s), slope = b + c * s;
       const long double extreme  = s - 2.L * at_s / slope;
       const long double rounding = 4.L * Tolerance::epsilon * std::abs(s);
@@ -146,6 +153,8 @@ namespace Debond
           Tolerance::rounding_of_data *
           (std::abs(piece.slope) +
            std::abs(piece.curvature * (is_last ? upper : piece.end)));
+        // A derivative that jumped down as s falls would be a convex kink: no
+        // quadratic from above touches there.
         require_of(pieces.size() == 1 ||
                      here.derivative(upper) >=
                        pieces[pieces.size() - 2].derivative(upper) -
@@ -173,6 +182,8 @@ namespace Debond
         require_of(!rises && least >= -rounding,
                    given[own.number],
                    "is negative");
+        // A convex parabola that is nowhere below the other pieces is its own
+        // majorant.
         for (const Piece &other : pieces)
           own.is_above = own.is_above && own.curvature >= 0. &&
                          own.decay == 0. && is_nowhere_below(own, other);
@@ -204,6 +215,9 @@ namespace Debond
   PiecewiseEnergy::Piece
   PiecewiseEnergy::piece_at(const double s, const double reached) const
   {
+    // Bonds come back along the piece they are on if that goes through zero
+    // with its derivative, as a spring does; else along the secant from where
+    // they have been.
     const unsigned int m     = index(reached);
     const unsigned int k     = index(s);
     Piece              piece = pieces[std::max(k, m)];
@@ -218,6 +232,8 @@ namespace Debond
         piece.upper = std::min(piece.upper, reached);
         return piece;
       }
+    // The parabola about 0 with this derivative at reached, and the value of f
+    // there.
     const double force = pieces[m].derivative(reached);
     const auto   taken = static_cast<long double>(pieces[m].value(reached)) -
                        0.5L * force * reached;
@@ -230,6 +246,7 @@ namespace Debond
   PiecewiseEnergy::majorant_curvature(const double s,
                                       const double reached) const
   {
+    // Most bonds are springs or broken, and need no search.
     if (const Piece &here = pieces[index(s)];
         reached == 0. && here.is_above && pieces[0].slope == 0.)
       return here.curvature;
@@ -237,6 +254,8 @@ namespace Debond
     const bool  has_secant = !returns_on_a_piece(reached);
     if (own.is_above && (own.is_flat() || !has_secant))
       return own.curvature;
+    // At least as much as f itself has at s, and as much as it takes to stay
+    // above each other piece.
     const bool is_on_secant = has_secant && s > reached;
     double     curvature    = std::max(0., own.second_derivative(s));
     const auto stay_above   = [&](const Piece &other) {
@@ -264,6 +283,8 @@ namespace Debond
     double      convexity = std::max(0., -own.curvature);
     for (const Piece &other : pieces)
       if (other.number != own.number)
+        // A quadratic below all of f has at most the least of the curvatures
+        // that meet the others.
         convexity =
           std::max(convexity, -curvatures_that_meet(own, s, other).lower);
     return convexity;
@@ -309,6 +330,7 @@ namespace Debond
   unsigned int
   PiecewiseEnergy::index(const double s) const
   {
+    // Laws have few pieces: a search by halves would take longer.
     unsigned int k = 0;
     while (k + 1 < pieces.size() && s < pieces[k].lower)
       ++k;
@@ -358,6 +380,8 @@ namespace Debond
             pieces[k].constant = last.value(last.lower);
             continue;
           }
+        // The value of the piece before at its end, less what this one has
+        // there without a constant.
         pieces[k].constant =
           last.constant +
           (static_cast<long double>(last.slope) - pieces[k].slope) * s +

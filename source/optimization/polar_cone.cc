@@ -5,7 +5,6 @@
 #include <Eigen/QR>
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace Debond
@@ -14,6 +13,8 @@ namespace Debond
   project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f)
   {
     Eigen::MatrixXd directions = B;
+    // Only the directions of the columns matter for the cone; with unit lengths
+    // one rounding fits all.
     for (auto direction : directions.colwise())
       direction.normalize();
     const double rounding = Tolerance::in_cone * f.norm();
@@ -27,6 +28,9 @@ namespace Debond
     // need.
     for (Eigen::Index step = 0; step < 100 * (B.cols() + B.rows()); ++step)
       {
+        // The column whose condition b'p <= 0 is violated most joins the active
+        // ones. If there is none, p is in the cone, and as what least squares
+        // leave of f it is the nearest point.
         Eigen::Index next    = -1;
         double       largest = rounding;
         for (Eigen::Index i = 0; i < directions.cols(); ++i)
@@ -45,6 +49,8 @@ namespace Debond
 
         for (;;)
           {
+            // Least squares on the active columns alone, which may be dependent
+            // where columns are parallel.
             const Eigen::MatrixXd A = directions(Eigen::all, active);
             Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
             qr.setThreshold(Tolerance::dependent);
@@ -80,6 +86,9 @@ namespace Debond
                 break;
               }
           }
+        // Each change of the set that makes p shorter is progress, as no set
+        // comes twice. One that does not is rounding, and its column is left
+        // alone until there is progress again.
         if (p.norm() < length)
           std::fill(is_useless.begin(), is_useless.end(), false);
         else

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -28,6 +27,8 @@ namespace Debond
     factor.reserve(static_cast<unsigned int>(s.size()));
     for (unsigned int i = 0; i < s.size(); ++i)
       {
+        // The state of a minimum: contact at 0, else the piece that s_i is on,
+        // of those that its bonds have not left for good.
         // What has no bonds is on one piece, whichever.
         if (bonds[i].energy == 0.)
           this->bonds[i].least = f.size() - 1;
@@ -54,8 +55,11 @@ namespace Debond
   double
   StationaryPath::distance(const unsigned int i, const bool opens) const
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const Bond      &bond     = bonds[i];
+    // In contact the force says when s_i leaves: once the pull on it is more
+    // than that of the bonds at 0; on a piece s_i itself says when it comes to
+    // an end; at a kink it is the force again, from the derivative of one piece
+    // to that of the next.
+    const Bond &bond = bonds[i];
     if (segments[i] == 0)
       return opens ? r(i) - derivative(i, bond.least) : infinity;
     const unsigned int k = (segments[i] - 1) / 2;
@@ -70,6 +74,7 @@ namespace Debond
   void
   StationaryPath::hold(const unsigned int i)
   {
+    // So that rounding in s_i does not grow from segment to segment.
     if (segments[i] == 0)
       s(i) = 0.;
     else if (!is_free(i))
@@ -90,11 +95,14 @@ namespace Debond
       else
         here = here == first ? 0 : here - 1;
     };
+    // Segments follow each other as s_i opens; bonds that do not return go back
+    // to contact from the piece they are on.
     go_on();
     // Where the derivative does not jump nothing stays at a kink.
     if (here > 0 && !is_free(i) && !f.has_drop((here - 1) / 2))
       go_on();
     hold(i);
+    // What has opened to this piece stays on it or goes further.
     if (is_free(i) && !returns && change.opens)
       bonds[i].least = (here - 1) / 2;
   }
@@ -114,6 +122,9 @@ namespace Debond
   bool
   StationaryPath::factorise()
   {
+    // A segment that changes changes one row of the matrix. Where the free part
+    // is not positive definite a factor with pivots takes over until it is
+    // again.
     const bool has_factor = !indefinite;
     indefinite.reset();
     if (!has_factor || !update_factor())
@@ -127,6 +138,8 @@ namespace Debond
   bool
   StationaryPath::update_factor()
   {
+    // The components whose row in the factor is missing, superfluous or
+    // another.
     std::vector<unsigned int> others;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (in_factor[i] != (is_free(i) ? segments[i] : 0))
@@ -136,6 +149,7 @@ namespace Debond
       return false;
     for (const unsigned int i : others)
       {
+        // On another piece its diagonal entry is another: out, and in again.
         if (in_factor[i] != 0)
           {
             const auto place = std::find(free.begin(), free.end(), i);
@@ -145,6 +159,8 @@ namespace Debond
           }
         if (!is_free(i))
           continue;
+        // A pivot that is not clearly positive ends what a Cholesky factor can
+        // say.
         const double diagonal = stiffness(i);
         if (!(diagonal > 0.) || !(factor.append(S.col(i)(free),
                                                 diagonal,
@@ -169,11 +185,14 @@ namespace Debond
         if (is_free(i))
           free.push_back(i);
       }
+    // Positive definite wherever the path consists of minima, and so on most of
+    // it.
     Eigen::MatrixXd M = S(free, free);
     for (unsigned int k = 0; k < free.size(); ++k)
       M(k, k) = stiffness(free[k]);
     if (factor.compute(M))
       return;
+    // The half-made factor is of no use for updates.
     std::fill(in_factor.begin(), in_factor.end(), 0);
     indefinite.emplace(M);
   }
@@ -194,12 +213,17 @@ namespace Debond
   void
   StationaryPath::solve()
   {
+    // Free components are on pieces, where r_i = w_i/l_i f'(s_i/l_i) is affine
+    // in s_i; the others have their s_i from hold(). So the free ones solve a
+    // linear system, with the stiffness of their pieces on its diagonal.
     // Of s at t: S s + r = load + (t - first_t) slope, r known by s_i on
     // pieces.
     Eigen::VectorXd rest = load + (parameter - first_t) * slope;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (!is_free(i) && s(i) != 0.)
         rest -= s(i) * S.col(i);
+    // Two systems with one factor: where the point is at this t, which takes
+    // back what rounding has gathered since the start, and how it moves with t.
     Eigen::VectorXd speeds = slope(free), point = rest(free);
     for (unsigned int k = 0; k < free.size(); ++k)
       {
@@ -210,10 +234,12 @@ namespace Debond
     solve_free(speeds);
     solve_free(point);
     ds.setZero();
-    ds(free)   = speeds;
-    s(free)    = point;
-    dr         = slope - S * ds;
-    r          = load + (parameter - first_t) * slope - S * s;
+    ds(free) = speeds;
+    s(free)  = point;
+    dr       = slope - S * ds;
+    r        = load + (parameter - first_t) * slope - S * s;
+    // What opening() compares speeds with. The terms of dr cancel, so that
+    // their size counts.
     largest_ds = ds.lpNorm<Eigen::Infinity>();
     largest_dr = (slope.cwiseAbs() + S.cwiseAbs() * ds.cwiseAbs()).maxCoeff();
   }
@@ -232,6 +258,8 @@ namespace Debond
       const double speed = opening(change.i);
       return speed == 0. ? 0. : (speed > 0.) == change.opens ? 1. : -1.;
     };
+    // After a breakpoint the path goes on into the new segment: t rises or
+    // falls as the component that has changed asks for.
     if (!changes.empty())
       {
         const auto first = sense(changes[0]);
@@ -255,11 +283,14 @@ namespace Debond
           return Event::degenerate;
       }
 
+    // Components that come to their ends together, as on symmetric bodies, do
+    // so at breakpoints that rounding sets apart.
     const double        tied = Tolerance::same_breakpoint * (upper - lower);
     const double        end  = direction > 0. ? upper : lower;
     double              step = std::max(0., direction * (end - parameter));
-    std::vector<double> steps(s.size(),
-                              std::numeric_limits<double>::infinity());
+    std::vector<double> steps(s.size(), infinity);
+    // How far the path goes: to the first end of a segment, or to the end of
+    // the interval.
     // Changes that are as far as the end come after it.
     const double before_end  = step - tied;
     bool         reaches_end = true;
@@ -274,6 +305,8 @@ namespace Debond
             }
         }
 
+    // Points between breakpoints are minima if the free part is positive
+    // definite and nothing rests at a kink, where f is concave.
     const double tie = step + tied;
     is_unstable      = indefinite.has_value();
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -284,6 +317,8 @@ namespace Debond
         if (steps[i] <= tie)
           changes.push_back(
             {i, direction * opening(i) > 0., segments[i], bonds[i].least});
+    // To the breakpoint, and there each change puts its component on the next
+    // segment.
     s += direction * step * ds;
     r += direction * step * dr;
     parameter = reaches_end ? end : parameter + direction * step;

@@ -90,7 +90,10 @@ namespace Debond
       stiffness += bonds.curvature(zero);
       ActiveSet           active(last.s.size(), 1);
       const BoundQPResult at_next =
-        solve_bound_qp(stiffness, scene.load(next), zero, active);
+        solve_bound_qp(stiffness,
+                       scene.load(next),
+                       bonds.contact_boundary().upper_bounds(),
+                       active);
       if (at_next.status != SolverStatus::success)
         return {};
       const double part = bonds.first_change(zero, at_next.x, 1.);
@@ -165,7 +168,7 @@ namespace Debond
                     const LoadFactors            next,
                     const Interruption          &interruption)
   {
-    const PiecewiseEnergy &branches = scene.scene.law().branches();
+    const PiecewiseEnergy &branches = scene.scene.law().pieces();
     // A law of one piece has no change, and bonds that soften change by and by.
     if (branches.size() == 1 || branches.softens())
       return {};

@@ -25,7 +25,7 @@ namespace Debond
     return {condensed.schur_complement(),
             g,
             (load(last) - g) / length,
-            scene.law().branches(),
+            scene.law().pieces(),
             bonds_of_nodes,
             scene.parameters().load_path.bonds_heal};
   }

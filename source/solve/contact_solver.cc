@@ -13,6 +13,8 @@
 #include <debond/solve/displacement_problem.h>
 #include <debond/solve/solve.h>
 
+#include <numeric>
+
 namespace Debond
 {
   namespace
@@ -103,9 +105,9 @@ namespace Debond
       void
       start_from(const Eigen::VectorXd &point, const DofVector &) override
       {
-        // A point from another mesh or load may miss s <= 0 by its
+        // A point from another mesh or load may miss the bounds by its
         // interpolation.
-        s = point.cwiseMin(0.);
+        s = point.cwiseMin(contact.boundary().upper_bounds());
       }
 
       void
@@ -121,9 +123,7 @@ namespace Debond
         // subspaces with half as many nodes each the finest one needs one or
         // two systems; the minimum that is found may be another one than that
         // of slow loading from rest.
-        s = coarse_start({whole.schur_complement(),
-                          whole.load(),
-                          scene.adhesion()},
+        s = coarse_start(condensed_problem(whole, scene.adhesion()),
                          coarsen(contact.boundary(), coarsest_contact_nodes),
                          MajoriseMinimise(parameters.majorise_minimise),
                          result.notes);
@@ -152,9 +152,7 @@ namespace Debond
         // scaled by the body's stiffness.
         const Eigen::VectorXd g =
           load_at_contact(problem, *here, factors, free_motions);
-        CondensedProblem condensed(whole.schur_complement(),
-                                   g,
-                                   bonds,
+        CondensedProblem condensed(condensed_problem(whole, bonds, g),
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
@@ -202,11 +200,12 @@ namespace Debond
         // The bundle method works on deal.II's vectors, so that s is copied
         // into one. J(s) has the form of the paper's functional, with S for A
         // and g for f.
-        const ContactSpace<dim>          normals = contact.condensed();
-        const MatrixView                 S       = whole.schur_complement();
+        std::vector<unsigned int> normals(s.size());
+        std::iota(normals.begin(), normals.end(), 0);
+        const MatrixView                 S = whole.schur_complement();
         const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
-        const DofVector       load(here->load().begin(), here->load().end());
-        const Functional<dim> functional(
+        const DofVector  load(here->load().begin(), here->load().end());
+        const Functional functional(
           [&matrix](DofVector &dst, const DofVector &src) {
             matrix.vmult(dst, src);
           },
@@ -216,7 +215,8 @@ namespace Debond
         // The stop criterion of the paper, v_k >= -epsilon_s, relative to the
         // energy, so that it does not depend on the units of the scene.
         parameters.epsilon_s *= here->energy_without_contact();
-        MetricDirection      direction(S, bonds, parameters.bundle_size);
+        MetricDirection      direction(condensed_problem(whole, bonds),
+                                  parameters.bundle_size);
         DofVector            x(s.begin(), s.end());
         const double         energy = here->energy_at_zero();
         ProximalBundleResult bundle =

@@ -9,7 +9,6 @@
 #include <boost/serialization/utility.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -32,7 +31,7 @@ namespace Debond
   template <int dim>
   DisplacementProblem::DisplacementProblem(const ElasticProblem<dim> &problem,
                                            const DofVector           &load,
-                                           const PiecewiseQuadratic  &nonsmooth,
+                                           const PiecewiseQuadratic  &phi,
                                            TruncatedMultigrid &multigrid_cycle,
                                            DistributedVector  &start,
                                            const Interruption &interruption)
@@ -43,7 +42,7 @@ namespace Debond
     , diagonal(distribute(problem.diagonal(),
                           start.locally_owned_elements(),
                           start.get_mpi_communicator()))
-    , phi(nonsmooth)
+    , phi(phi)
     , contact(problem)
     , contact_block(contact.block_of(problem.matrix()))
     , rows_of_contact(A.rows_of(problem.unknowns().contact().normal_dofs()))
@@ -57,7 +56,7 @@ namespace Debond
     // over the contact nodes.
     const Eigen::VectorXd s = contact.trace(u);
     for (unsigned int i = 0; i < active.size(); ++i)
-      active[i] = s(i) == 0.;
+      active[i] = s(i) == contact.upper()(i);
   }
 
 
@@ -90,7 +89,7 @@ namespace Debond
     const Eigen::VectorXd force_s = contact.trace(violation) - xi;
     state.n_active                = 0;
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (s(i) == 0.)
+      if (s(i) == contact.upper()(i))
         {
           ++state.n_active;
           change(i) -= std::max(force_s(i), 0.);
@@ -107,22 +106,10 @@ namespace Debond
   bool
   DisplacementProblem::majorise()
   {
-    // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const Eigen::VectorXd             s            = contact.trace(u);
-    const Eigen::SparseMatrix<double> previous_E   = E;
-    const Eigen::VectorXd             previous_b_c = b_c;
-    E                                              = phi.curvature(s);
-    const Eigen::VectorXd E_s                      = E * s;
-    b_c                                            = E_s - phi.subgradient(s);
     // A majorant that is the same but for rounding has the same minimum, which
-    // ends the iteration instead of another cycle. The first one is new in any
-    // case.
-    if (previous_b_c.size() != b_c.size())
-      return true;
-    return (b_c - previous_b_c).norm() >
-             Tolerance::same_majorant * (E_s.norm() + b_c.norm()) ||
-           curvature_norm(E - previous_E) >
-             Tolerance::same_majorant * curvature_norm(E);
+    // ends the iteration instead of another cycle.
+    const Eigen::VectorXd s = contact.trace(u);
+    return majorant.touch(s, phi.subgradient(s), phi.curvature(s));
   }
 
 
@@ -136,13 +123,14 @@ namespace Debond
     // sequential, and short beside a product with A; so each rank does the
     // whole of it and then adds what that does to its own unknowns.
     using Entry                   = Eigen::SparseMatrix<double>::InnerIterator;
+    const auto           &E       = majorant.E;
     Eigen::VectorXd       s       = contact.trace(u);
     const Eigen::VectorXd old_s   = s;
     Eigen::VectorXd       force_s = contact.trace(force);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         const double stiffness = contact_block.coeff(i, i) + E.coeff(i, i);
-        s(i)                   = std::min(0., s(i) + force_s(i) / stiffness);
+        s(i) = std::min(contact.upper()(i), s(i) + force_s(i) / stiffness);
         if (s(i) == old_s(i))
           continue;
         for (Entry entry(contact_block, i); entry; ++entry)
@@ -217,10 +205,11 @@ namespace Debond
       u             = previous_u;
       return result;
     };
+    const auto &E = majorant.E;
     // Minus the majorant's gradient at u.
     force = f;
     force -= internal;
-    const Eigen::VectorXd bond_forces = b_c - E * contact.trace(u);
+    const Eigen::VectorXd bond_forces = majorant.b - E * contact.trace(u);
     contact.add(bond_forces, force);
     while (result.active_set_steps < maximum_line_steps &&
            result.linear_iterations < maximum_linear_iterations)
@@ -235,7 +224,7 @@ namespace Debond
         // free, also those in contact that a force pulls, since the smoother
         // has not lifted them yet.
         for (unsigned int i = 0; i < s.size(); ++i)
-          active[i] = s(i) == 0. && force_s(i) >= 0.;
+          active[i] = s(i) == contact.upper()(i) && force_s(i) >= 0.;
         free_force = force;
         contact.set_zero(active, free_force);
         const double residual = free_force.l2_norm();
@@ -248,7 +237,7 @@ namespace Debond
         // Truncation costs products on the contact boundary at all levels, so
         // it is done only if T or E have changed.
         const bool is_changed = !is_prepared || cycle_active != active ||
-                                curvature_norm(cycle_E - E) != 0.;
+                                (E.size() > 0 && (cycle_E - E).norm() != 0.);
         if (is_changed)
           {
             contact.truncate(E, active, cycle);
@@ -275,15 +264,16 @@ namespace Debond
           return result;
 
         // The correction may go through the foundation. Components that would
-        // are cut at s = 0 for a step of 1, and a longer step ends where the
-        // first node touches. On this line the majorant is a parabola, whose
-        // minimum is the step.
-        double                longest = std::numeric_limits<double>::infinity();
-        const Eigen::VectorXd c       = contact.trace(correction);
-        const Eigen::VectorXd allowed = c.cwiseMin(-s);
+        // are cut at their bounds for a step of 1, and a longer step ends where
+        // the first node touches. On this line the majorant is a parabola,
+        // whose minimum is the step.
+        double                longest = infinity;
+        const Eigen::VectorXd room    = contact.upper() - s;
+        const Eigen::VectorXd allowed =
+          contact.trace(correction).cwiseMin(room);
         for (unsigned int i = 0; i < s.size(); ++i)
           if (allowed(i) > 0.)
-            longest = std::min(longest, -s(i) / allowed(i));
+            longest = std::min(longest, room(i) / allowed(i));
         contact.set(allowed, correction);
         A.vmult(image, correction);
         const Eigen::VectorXd of_bonds = E * allowed;
@@ -301,9 +291,9 @@ namespace Debond
         const double step = std::min(longest, slope / curvature);
         u.add(step, correction);
         force.add(-step, image);
-        // The step ends at s = 0 but for rounding, which must not count as
+        // The step ends at the bounds but for rounding, which must not count as
         // penetration.
-        contact.set(contact.trace(u).cwiseMin(0.), u);
+        contact.set(contact.trace(u).cwiseMin(contact.upper()), u);
       }
     return result;
   }

@@ -60,11 +60,8 @@ namespace Debond
         const Condensation          condensed = scene.at(factor);
         // If the neighbour's minimum lives on under this load,
         // majorise-minimise finds it within a few steps.
-        Eigen::VectorXd              s = neighbour.s;
-        CondensedProblem             problem(condensed.schur_complement(),
-                                 condensed.load(),
-                                 bonds,
-                                 s);
+        Eigen::VectorXd  s = neighbour.s;
+        CondensedProblem problem(condensed_problem(condensed, bonds), s);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(parameters.majorise_minimise)
             .minimize(problem, [this](const auto &) {
@@ -91,7 +88,8 @@ namespace Debond
         const Condensation          condensed = scene.at(factor);
         WhichMinimum                which =
           find_better_minimum(what, bonds, condensed, interruption, point.s);
-        point.functional = condensed_functional(condensed, bonds, point.s);
+        point.functional =
+          condensed_functional(condensed_problem(condensed, bonds), point.s);
         // The bound of the condensed problem is moved outwards, to hold for J
         // from the strains at this factor.
         if (which.proof_attempted)
@@ -112,17 +110,10 @@ namespace Debond
 
 
   double
-  condensed_functional(const Condensation       &condensed,
-                       const PiecewiseQuadratic &adhesion,
-                       const VectorView         &s)
+  condensed_functional(const PiecewiseProblem &problem, const VectorView &s)
   {
     Eigen::VectorXd point = s;
-    return CondensedProblem(condensed.schur_complement(),
-                            condensed.load(),
-                            adhesion,
-                            point)
-      .evaluate()
-      .functional;
+    return CondensedProblem(problem, point).evaluate().functional;
   }
 
 

@@ -191,8 +191,9 @@ namespace Debond
             const double      factor = steps[k].factor;
             const BranchPoint point  = {
                points[k],
-               condensed_functional(condensed_scene.at(factor),
-                                   condensed_scene.bonds(factor),
+               condensed_functional(condensed_problem(condensed_scene.at(factor),
+                                                     condensed_scene.bonds(
+                                                       factor)),
                                    points[k]),
                {}};
             const auto [entry, is_new] = followed.emplace(factor, point);

@@ -148,7 +148,7 @@ namespace Debond
     Event last  = Event::contact;
     // Nodes touch and go through the pieces of the law, there and back.
     const std::size_t most =
-      100 + 10 * (1 + scene.scene.law().branches().size()) * s.size();
+      100 + 10 * (1 + scene.scene.law().pieces().size()) * s.size();
     bool is_going = add(true);
     for (unsigned int k = 0; is_going && last != Event::end; ++k)
       {

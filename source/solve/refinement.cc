@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
+#include <debond/optimization/majorise/majorant.h>
 #include <debond/solve/extended_operator.h>
 #include <debond/solve/refinement.h>
 
@@ -53,7 +54,7 @@ namespace Debond
             std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
           terms += diagonal(i) * size * size;
         }
-    return std::numeric_limits<double>::epsilon() * terms;
+    return Tolerance::epsilon * terms;
   }
 
 
@@ -61,34 +62,36 @@ namespace Debond
   namespace
   {
     /// The majorant of J at a point, in extended precision, and its minimum
-    /// over u_nu <= gap. In the displacements themselves: where a gap is far
+    /// within the bounds. In the displacements themselves: where a gap is far
     /// larger than they are, nothing would be left of them in w.
     template <int dim>
     class ExtendedMajorant
     {
     public:
       ExtendedMajorant(const ElasticProblem<dim> &elastic_problem,
-                       const PiecewiseQuadratic  &nonsmooth,
+                       const PiecewiseQuadratic  &phi,
                        const LoadFactors          factors,
                        CorrectionSolver          &correction_solver,
                        const Interruption        &interrupted_by,
                        const DofVector           &start)
         : A(elastic_problem)
         , problem(elastic_problem)
-        , phi(nonsmooth)
+        , phi(phi)
         , solver(correction_solver)
         , interruption(interrupted_by)
         , normals(problem.unknowns().contact().normal_dofs())
+        , upper(problem.unknowns().contact().boundary().upper_bounds())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
         , f(load_at(problem, factors))
       {
         // The contact set of the result in double precision is the first guess,
         // and mostly the last one.
-        for (const double s : problem.unknowns().contact().trace(start))
-          active.push_back(s == 0.);
+        const Eigen::VectorXd s = problem.unknowns().contact().trace(start);
+        for (unsigned int i = 0; i < s.size(); ++i)
+          active.push_back(s(i) == upper(i));
         // The energy that rounding of w leaves of a lifting that w undoes.
-        constexpr long double epsilon  = std::numeric_limits<double>::epsilon();
+        constexpr long double epsilon  = Tolerance::epsilon;
         const DofVector       diagonal = problem.diagonal();
         for (unsigned int i = 0; i < lifting.size(); ++i)
           least_energy +=
@@ -102,21 +105,10 @@ namespace Debond
       majorise()
       {
         const Eigen::VectorXd s = to_foundation().template cast<double>();
-        const Eigen::SparseMatrix<double> previous_E   = E;
-        const Eigen::VectorXd             previous_b_c = b_c;
         // Where Phi softens, majorants come to a minimum in the limit only.
         // Next to it Newton steps with Phi'' get there, and where Phi does not
         // soften both are the same.
-        E                         = phi.second_derivative(s);
-        const Eigen::VectorXd E_s = E * s;
-        b_c                       = E_s - phi.subgradient(s);
-        // Without contact nodes the first one looks like none.
-        if (!has_majorant)
-          return has_majorant = true;
-        return (b_c - previous_b_c).norm() >
-                 Tolerance::same_majorant * (E_s.norm() + b_c.norm()) ||
-               curvature_norm(E - previous_E) >
-                 Tolerance::same_majorant * curvature_norm(E);
+        return majorant.touch(s, phi.subgradient(s), phi.second_derivative(s));
       }
 
       bool
@@ -132,10 +124,10 @@ namespace Debond
             ++result.systems;
             for (unsigned int i = 0; i < normals.size(); ++i)
               if (active[i] != 0)
-                u(normals[i]) = lifting(normals[i]);
+                u(normals[i]) = lifting(normals[i]) + upper(i);
             // The preconditioner is made anew for each active set, while u
             // stays where the last one has led it.
-            solver.prepare(E, active);
+            solver.prepare(majorant.E, active);
             if (!solve())
               return false;
 
@@ -143,7 +135,7 @@ namespace Debond
             // double precision, and a force only above the largest residual
             // that the free unknowns have kept.
             const Eigen::VectorXd excess =
-              to_foundation().template cast<double>();
+              to_foundation().template cast<double>() - upper;
             const ExtendedVector r  = force();
             Eigen::VectorXd      mu = at_contact(r).template cast<double>();
             long double          residual = 0.;
@@ -160,7 +152,7 @@ namespace Debond
             // goes on for too long, which ends after finitely many steps.
             if (rule.update(excess,
                             mu,
-                            0.01 * std::numeric_limits<double>::epsilon() *
+                            0.01 * Tolerance::epsilon *
                               excess.lpNorm<Eigen::Infinity>(),
                             static_cast<double>(residual),
                             active) == 0)
@@ -177,8 +169,8 @@ namespace Debond
         // admissible again.
         for (unsigned int i = 0; i < point.size(); ++i)
           point(i) = static_cast<double>(u(i) - lifting(i));
-        for (const auto normal : normals)
-          point(normal) = std::min(point(normal), 0.);
+        for (unsigned int i = 0; i < normals.size(); ++i)
+          point(normals[i]) = std::min(point(normals[i]), upper(i));
         return point;
       }
 
@@ -220,7 +212,7 @@ namespace Debond
       ExtendedVector
       E_times(const ExtendedVector &s) const
       {
-        return E.cast<long double>() * s;
+        return majorant.E.cast<long double>() * s;
       }
 
       /// Twice the energy of u and of the bonds' curvature, without what
@@ -257,7 +249,7 @@ namespace Debond
         ExtendedVector       r   = f - A * u;
         const ExtendedVector E_s = E_times(to_foundation());
         for (unsigned int i = 0; i < normals.size(); ++i)
-          r(normals[i]) += b_c(i) - E_s(i);
+          r(normals[i]) += majorant.b(i) - E_s(i);
         return r;
       }
 
@@ -354,16 +346,15 @@ namespace Debond
       CorrectionSolver                                   &solver;
       const Interruption                                 &interruption;
       const std::vector<dealii::types::global_dof_index> &normals;
+      const Eigen::VectorXd                               upper;
 
       const ExtendedVector lifting;
       ExtendedVector       u; ///< the displacements, lifting and all
       const ExtendedVector f;
       long double          least_energy = 0.;
 
-      Eigen::SparseMatrix<double> E;
-      Eigen::VectorXd             b_c;
-      bool                        has_majorant = false;
-      ActiveSet                   active;
+      Majorant  majorant;
+      ActiveSet active;
     };
   } // namespace
 
@@ -417,9 +408,8 @@ namespace Debond
         energy = problem.load(factors) * u - phi.subgradient(s).dot(s);
       }
     // Where nothing of the energy is known there is every reason to refine.
-    const double rounding = energy > 0. ?
-                              rounding_of_energy(problem, factors, u) / energy :
-                              std::numeric_limits<double>::infinity();
+    const double rounding =
+      energy > 0. ? rounding_of_energy(problem, factors, u) / energy : infinity;
     if (rounding <= allowed_energy_rounding(problem.unknowns().n_free_dofs()))
       return {};
 

@@ -255,12 +255,12 @@ namespace Debond
       }
     // The functional of the paper on all unknowns, for its bundle method;
     // condensed methods make theirs of S and g.
-    energy = std::make_unique<Functional<dim>>(
+    energy = std::make_unique<Functional>(
       [this](DofVector &dst, const DofVector &src) {
         elastic_problem->vmult(dst, src);
       },
       elastic_problem->load(),
-      elastic_problem->unknowns().contact(),
+      elastic_problem->unknowns().contact().bounds().indices,
       *adhesion_integral);
   }
 

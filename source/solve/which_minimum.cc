@@ -93,9 +93,9 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(adhesion.contact_boundary()))
-        , lumped(lumped_branches(adhesion.adhesive_law().branches(),
-                                 lumped_weights(adhesion),
-                                 stretches(adhesion)))
+        , lumped(lumped_energy(adhesion.adhesive_law().pieces(),
+                               lumped_weights(adhesion),
+                               stretches(adhesion)))
         , work(parameters.search_operations)
       {
         // The scale of the gap: what the bonds can change in J. That is at most
@@ -149,7 +149,8 @@ namespace Debond
       prove()
       {
         const Stage  stage("proof");
-        const double functional = condensed_functional(condensed, adhesion, s);
+        const double functional =
+          condensed_functional(condensed_problem(condensed, adhesion), s);
         BranchAndBoundParameters limits = proof_limits();
         // Nodes of the tree that wait keep their intervals. Branch and bound
         // ends with a valid gap before they take the memory that is left.
@@ -183,7 +184,7 @@ namespace Debond
       WhichMinimum                &result;
       const MajoriseMinimise       method;
       const NeighbourGraph         graph;
-      const SeparableBranches      lumped;
+      const SeparableEnergy        lumped;
 
       WorkLimit work;
 
@@ -193,13 +194,16 @@ namespace Debond
       SearchProblem
       problem()
       {
-        return {
-          {condensed.schur_complement(), condensed.load(), adhesion, work},
-          lumped,
-          graph,
-          method,
-          &guess,
-          &work};
+        return {{condensed.schur_complement(),
+                 condensed.load(),
+                 adhesion.contact_boundary().upper_bounds(),
+                 adhesion,
+                 work},
+                lumped,
+                graph,
+                method,
+                &guess,
+                &work};
       }
 
       SeparableProblem
@@ -207,6 +211,7 @@ namespace Debond
       {
         return {condensed.schur_complement(),
                 condensed.load(),
+                adhesion.contact_boundary().upper_bounds(),
                 lumped,
                 interruption};
       }
@@ -330,10 +335,10 @@ namespace Debond
           Eigen::VectorXd weights = lumped_weights(adhesion);
           for (const Eigen::SparseMatrix<double> &P : prolongations)
             weights = (P.transpose() * weights).eval();
-          const SeparableBranches coarse_lumped =
-            lumped_branches(adhesion.adhesive_law().branches(),
-                            weights,
-                            stretches(adhesion, prolongations));
+          const SeparableEnergy coarse_lumped =
+            lumped_energy(adhesion.adhesive_law().pieces(),
+                          weights,
+                          stretches(adhesion, prolongations));
           const NeighbourGraph coarse_graph =
             coarse_neighbours(prolongations.back());
           add_search(
@@ -347,10 +352,7 @@ namespace Debond
         std::vector<std::string> failures;
         Eigen::VectorXd          point =
           coarse_start(problem(), prolongations, method, failures, search);
-        const auto             S = condensed.schur_complement();
-        const Eigen::VectorXd &g = condensed.load();
-
-        CondensedProblem finest(S, g, adhesion, point);
+        CondensedProblem finest(problem(), point);
         // The best coarse state, prolongated level by level, is minimised on
         // the finest nodes as far as the limit of work allows.
         const MajoriseMinimiseResult minimum =
@@ -361,7 +363,7 @@ namespace Debond
         // A trial that fails weakens the word, one that the limit has stopped
         // does not: the limit itself is reported. A state that is lower by
         // rounding alone is none.
-        const auto given = CondensedProblem(S, g, adhesion, s).evaluate();
+        const auto given = CondensedProblem(problem(), s).evaluate();
         if (minimum.status != SolverStatus::success)
           result.search_failures += minimum.status != SolverStatus::interrupted;
         else if (minimum.functional <
@@ -402,7 +404,7 @@ namespace Debond
                       const VectorView            &s,
                       const Condensation          *condensed)
   {
-    if (adhesion.adhesive_law().branches().size() == 1 || s.size() == 0)
+    if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
       return MinimumKind::global;
     // At a drop of the traction J has a concave kink, from which one of the two
     // directions descends. So close to it rounding decides on which side a bond
@@ -462,8 +464,9 @@ namespace Debond
     if (parameters.prove)
       search.prove();
     if (result.proof_attempted)
-      result.functional = condensed_functional(condensed, adhesion, s) +
-                          condensed.energy_at_zero();
+      result.functional =
+        condensed_functional(condensed_problem(condensed, adhesion), s) +
+        condensed.energy_at_zero();
     result.interrupted = interruption.requested();
     return result;
   }

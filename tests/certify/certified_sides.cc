@@ -80,7 +80,7 @@ namespace
               continue;
             ++n_certain;
             for (const double value : {first, last})
-              n_wrong += scene->law().branches().index(value) != *side.piece;
+              n_wrong += scene->law().pieces().index(value) != *side.piece;
           }
       }
     std::cout << name << std::endl;

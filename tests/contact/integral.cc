@@ -295,7 +295,7 @@ test_integral(const unsigned int degree,
   check(name + "int j_1 against a fine sum", value_error, tolerance);
   check(name + "its exact value in 2D", exact_error, 1e-8);
   check(name + "subgradient against differences", gradient_error, 1e-6);
-  // Where no point changes its branch.
+  // Where no point changes its piece.
   check(name + "curvature against differences", curvature_error, 1e-6);
   check(name + "the subgradient is allowed", intervals_hold);
   check(name + "within a radius all subgradients near by are", goldstein_holds);

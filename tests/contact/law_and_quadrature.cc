@@ -282,7 +282,7 @@ namespace
     check("the strength is at strength / stiffness, nothing at 2 energy / "
           "strength",
           bilinear.derivative(-0.01) == -1. &&
-            bilinear.branches()[2].upper == -0.04 && bilinear.is_loose(2));
+            bilinear.pieces()[2].upper == -0.04 && bilinear.is_loose(2));
     check("half of the traction half way down",
           std::abs(bilinear.derivative(-0.025) + 0.5) < 1e-15);
     check("all bonds take the fracture energy",

@@ -116,7 +116,7 @@ namespace
       {
         const PiecewiseEnergy energy =
           k % 2 == 0 ? any_branches(random) : stepped(random, 1 + k % 4);
-        BranchEnergy f = {k % 3 == 0 ? 0. : random(0., 1.), {}};
+        ShiftedEnergy f = {k % 3 == 0 ? 0. : random(0., 1.), {}};
         for (unsigned int p = 0; p < energy.size(); ++p)
           f.pieces.push_back(energy[p]);
         const double         lower = -random(0., 5.);
@@ -149,8 +149,8 @@ namespace
 
             if (f.convexity > 0.1)
               {
-                const double e    = 1e-6;
-                BranchEnergy more = f, less = f;
+                const double  e    = 1e-6;
+                ShiftedEnergy more = f, less = f;
                 more.convexity += e;
                 less.convexity -= e;
                 const double derivative =
@@ -183,7 +183,7 @@ namespace
   {
     Problem               p      = {random_matrix(random, n, any_coupling),
                                     Vector::NullaryExpr(n, [&]() { return random(-2.2, 0.8); }),
-                                    SeparableBranches({})};
+                                    SeparableEnergy({})};
     const PiecewiseEnergy common = stepped(random, random.integer(1, 3));
     // Of a law, each unknown has a multiple.
     for (unsigned int i = 0; i < n; ++i)
@@ -216,8 +216,7 @@ namespace
 
         BranchAndBoundParameters parameters;
         parameters.tolerance = tolerance;
-        const auto proof =
-          branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(n));
+        const auto proof     = branch_and_bound(parameters, p, Vector::Zero(n));
         not_proved += proof.status != ProofStatus::proved;
         above += proof.lower > minimum + rounding;
         wrong += std::abs(proof.upper - minimum) > tolerance ||
@@ -225,12 +224,11 @@ namespace
         branched += proof.nodes > 1;
 
         parameters.maximum_nodes = 1;
-        const auto stopped =
-          branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(n));
+        const auto stopped = branch_and_bound(parameters, p, Vector::Zero(n));
         interrupted += stopped.status == ProofStatus::node_limit;
         above += stopped.lower > minimum + rounding;
         // The box must not lose the minimum.
-        const NodeBound node_bound(p.S, p.g, p.phi);
+        const NodeBound node_bound(p);
         const double    best   = double(minimum) + tolerance;
         ProofNode       node   = *node_bound.root(best);
         const auto      result = node_bound.bound(node, best, 0.);
@@ -245,14 +243,12 @@ namespace
 
         Vector                 s = Vector::Zero(n);
         const MajoriseMinimise method({});
-        CondensedProblem       problem(p.S, p.g, p.phi, s);
+        CondensedProblem       problem(p, s);
         method.minimize(problem);
         if (is_stepped)
           {
             const auto search =
-              search_branches({{p.S, p.g, p.phi}, p.phi, chain(n), method},
-                              {},
-                              s);
+              search_branches({p, p.phi, chain(n), method}, {}, s);
             wrong_search +=
               !search.complete || search.failures > 0 ||
               std::abs(search.functional - p.value(s)) > tolerance ||

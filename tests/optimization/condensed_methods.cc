@@ -91,23 +91,19 @@ namespace
           }
         const MajoriseMinimise   method({});
         std::vector<std::string> failures;
-        coarse_start({p.S, p.g, p.phi},
-                     prolongations,
-                     MajoriseMinimise({1e-10, 1}),
-                     failures);
+        coarse_start(p, prolongations, MajoriseMinimise({1e-10, 1}), failures);
         n_failed += failures.size();
         for (const std::string &failure : failures)
           all_named = all_named &&
                       failure.find(" after 1 iterations") != std::string::npos;
         failures.clear();
-        Eigen::VectorXd s =
-          coarse_start({p.S, p.g, p.phi}, prolongations, method, failures);
-        converged = converged && failures.empty();
+        Eigen::VectorXd s = coarse_start(p, prolongations, method, failures);
+        converged         = converged && failures.empty();
         for (const double entry : s)
           feasible = feasible && entry <= 0.;
         below_rest =
           below_rest && s.dot(0.5 * p.S * s - p.g) + p.phi.change(s) <= 0.;
-        CondensedProblem problem(p.S, p.g, p.phi, s);
+        CondensedProblem problem(p, s);
         converged =
           converged && method.minimize(problem).status == SolverStatus::success;
       }
@@ -168,7 +164,7 @@ namespace
           const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
           ActiveSet             active(n, 0);
           const BoundQPResult   without = solve_bound_qp(M, r, zero, active);
-          ActiveSet             guessed = guess.active_set(M, E, r);
+          ActiveSet             guessed = guess.active_set(M, E, r, zero);
           const BoundQPResult   with    = solve_bound_qp(M, r, zero, guessed);
           same = same && with.status == SolverStatus::success &&
                  (with.x - without.x).norm() <= 1e-12 * without.x.norm();

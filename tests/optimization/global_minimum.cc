@@ -88,21 +88,22 @@ namespace
     bool growth_holds = true, box_holds = true, close = true;
     for (unsigned int k = 0; k < 200; ++k)
       {
-        const unsigned int      n       = 3 + k % 4;
-        const Problem           p       = random_bonds(random, n, k % 2 == 0);
-        const Eigen::MatrixXd   inverse = p.S.inverse();
-        const Eigen::VectorXd  &g       = p.g;
-        const Eigen::VectorXd   minimum = inverse * g;
-        const double            value   = -0.5 * g.dot(minimum);
-        const PiecewiseEnergy   zero    = PiecewiseEnergy::zero();
-        const SeparableBranches no_bonds(std::vector<PiecewiseEnergy>(n, zero));
-        const double            more = random(0.1, 1.);
-        const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);
+        const unsigned int     n       = 3 + k % 4;
+        const Problem          p       = random_bonds(random, n, k % 2 == 0);
+        const Eigen::MatrixXd  inverse = p.S.inverse();
+        const Eigen::VectorXd &g       = p.g;
+        const Eigen::VectorXd  minimum = inverse * g;
+        const double           value   = -0.5 * g.dot(minimum);
+        const PiecewiseEnergy  zero    = PiecewiseEnergy::zero();
+        const SeparableEnergy  no_bonds(std::vector<PiecewiseEnergy>(n, zero));
+        const double           more = random(0.1, 1.);
+        const auto             root =
+          NodeBound({p.S, p.g, Vector::Zero(n), no_bonds}).root(value + more);
 
         const BoxProblem problem = {p.S,
                                     g,
-                                    std::vector<BranchEnergy>(n,
-                                                              {0., {zero[0]}}),
+                                    std::vector<ShiftedEnergy>(n,
+                                                               {0., {zero[0]}}),
                                     Eigen::VectorXd::Constant(n, -1e3),
                                     Eigen::VectorXd::Constant(n, 1e3)};
         const LowerBound lower_bound(problem, minimum);
@@ -200,9 +201,8 @@ namespace
         const double             minimum = p.enumerated_minimum(minimiser);
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10;
-        const auto proof =
-          branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(n));
-        good  = good && proof.status == ProofStatus::proved;
+        const auto proof     = branch_and_bound(parameters, p, Vector::Zero(n));
+        good                 = good && proof.status == ProofStatus::proved;
         found = found && std::abs(proof.upper - minimum) < 1e-10 &&
                 proof.lower <= minimum + 1e-15;
       }
@@ -225,13 +225,11 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance     = 1e-9;
         parameters.maximum_nodes = 300;
-        const auto one =
-          branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(80));
+        const auto one = branch_and_bound(parameters, p, Vector::Zero(80));
         for (const unsigned int n_threads : {2, 3, 16})
           {
             parameters.n_threads = n_threads;
-            const auto more =
-              branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(80));
+            const auto more = branch_and_bound(parameters, p, Vector::Zero(80));
             same = same && more.nodes == one.nodes && more.lower == one.lower &&
                    more.upper == one.upper && more.s == one.s &&
                    more.status == one.status;
@@ -277,12 +275,10 @@ namespace
           std::isfinite(interrupted.lower) && interrupted.lower <= full.upper);
     BranchAndBoundParameters parameters;
     parameters.maximum_seconds = 0.;
-    const auto late =
-      branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(8));
-    Problem indefinite = p;
-    indefinite.S(3, 3) = -1.;
-    const auto nothing =
-      branch_and_bound({}, {indefinite.S, p.g, p.phi}, Vector::Zero(8));
+    const auto late       = branch_and_bound(parameters, p, Vector::Zero(8));
+    Problem    indefinite = p;
+    indefinite.S(3, 3)    = -1.;
+    const auto nothing    = branch_and_bound({}, indefinite, Vector::Zero(8));
     check("no time", late.status == ProofStatus::time_limit);
     check("an indefinite matrix has no bound",
           nothing.status == ProofStatus::no_bound &&
@@ -302,10 +298,9 @@ namespace
                          bonds_of(Eigen::VectorXd::Constant(1, 2.), 0.5)};
     const auto search = [&](Vector &s) {
       const MajoriseMinimise method({});
-      CondensedProblem       problem(p.S, p.g, p.phi, s);
+      CondensedProblem       problem(p, s);
       method.minimize(problem);
-      return search_branches(
-        {{p.S, p.g, p.phi}, p.phi, chain(s.size()), method}, {}, s);
+      return search_branches({p, p.phi, chain(s.size()), method}, {}, s);
     };
     Vector     s     = Vector::Zero(1);
     const auto found = search(s);
@@ -352,16 +347,13 @@ namespace
         Vector                 s = hanging;
         LongVector             minimiser;
         const MajoriseMinimise method({});
-        CondensedProblem       problem(p.S, p.g, p.phi, s);
+        CondensedProblem       problem(p, s);
         method.minimize(problem);
         BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
         const double found =
-          search_branches({{p.S, p.g, p.phi}, p.phi, chain(n), method},
-                          quick,
-                          s)
-            .functional;
+          search_branches({p, p.phi, chain(n), method}, quick, s).functional;
         missed += found > p.enumerated_minimum(minimiser) + 1e-9;
       }
     check("bonds over a gap: the least state of 400 found", missed == 0);
@@ -384,16 +376,14 @@ namespace
         const double             minimum = p.enumerated_minimum(minimiser);
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10 * std::max(1., std::abs(minimum));
-        const auto proof =
-          branch_and_bound(parameters, {p.S, p.g, p.phi}, Vector::Zero(n));
+        const auto proof     = branch_and_bound(parameters, p, Vector::Zero(n));
         invalid += proof.lower > minimum + 1e-15;
         wrong += std::abs(proof.upper - minimum) > parameters.tolerance;
         proved += proof.status == ProofStatus::proved;
 
         parameters.maximum_nodes = 0;
-        const auto certificate   = branch_and_bound(parameters,
-                                                  {p.S, p.g, p.phi},
-                                                  minimiser.cast<double>());
+        const auto certificate =
+          branch_and_bound(parameters, p, minimiser.cast<double>());
         invalid += certificate.lower > minimum + 1e-15;
         certified += certificate.status == ProofStatus::proved;
       }

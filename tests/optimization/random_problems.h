@@ -8,7 +8,7 @@
 #define debond_tests_optimization_random_problems_h
 
 #include <debond/optimization/global/branch_search.h>
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 
 #include <Eigen/Dense>
 
@@ -49,14 +49,14 @@ private:
 
 
 /// k/2 min(s^2, M^2) for each k of @p stiffness.
-inline Debond::SeparableBranches
+inline Debond::SeparableEnergy
 bonds_of(const Vector &stiffness, const double threshold)
 {
   std::vector<Debond::PiecewiseEnergy> f;
   for (const double k : stiffness)
     f.push_back(Debond::PiecewiseEnergy(
       {{k, 0., -threshold, "bonded"}, {0., 0., Debond::no_end, "broken"}}));
-  return Debond::SeparableBranches(f);
+  return Debond::SeparableEnergy(f);
 }
 
 
@@ -126,9 +126,20 @@ pivoted_minimiser(const LongMatrix  &A,
 
 struct Problem
 {
-  Eigen::MatrixXd           S;
-  Vector                    g;
-  Debond::SeparableBranches phi;
+  Eigen::MatrixXd         S;
+  Vector                  g;
+  Debond::SeparableEnergy phi;
+
+  /// What the methods take.
+  operator Debond::PiecewiseProblem() const
+  {
+    return {S, g, Vector::Zero(g.size()), phi};
+  }
+
+  operator Debond::SeparableProblem() const
+  {
+    return {S, g, Vector::Zero(g.size()), phi};
+  }
 
   /// As exact as a double can be: bounds come close to it.
   long double

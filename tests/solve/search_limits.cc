@@ -79,9 +79,7 @@ namespace
         solver.search_operations = limit;
         // The intact state, which is a minimum far above the least one.
         Eigen::VectorXd  s = Eigen::VectorXd::Zero(condensed.load().size());
-        CondensedProblem problem(condensed.schur_complement(),
-                                 condensed.load(),
-                                 scene.adhesion(),
+        CondensedProblem problem(condensed_problem(condensed, scene.adhesion()),
                                  s);
         MajoriseMinimise(solver.majorise_minimise).minimize(problem);
         const Eigen::VectorXd start  = s;

@@ -61,10 +61,7 @@ main()
 
   // How it is minimised, from rest.
   Eigen::VectorXd  s = contact.at_rest();
-  CondensedProblem minimised(condensed.schur_complement(),
-                             condensed.load(),
-                             bonds,
-                             s);
+  CondensedProblem minimised(condensed_problem(condensed, bonds), s);
   const auto       result = MajoriseMinimise({}).minimize(minimised);
   const double     J      = result.functional + condensed.energy_at_zero();
   std::cout << to_string(result.status) << ", s = " << s.mean() << ", J = " << J

@@ -4,7 +4,7 @@
 
 #include <debond/certify/certified_side.h>
 #include <debond/certify/equilibrium_problem.h>
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 #include <debond/optimization/piecewise_energy.h>
 
 #include <Eigen/Core>
@@ -25,9 +25,9 @@ namespace Debond
     double constant;
     double rounding; ///< what elimination may have lost of it
 
-    Eigen::MatrixXd                    S;
-    Eigen::VectorXd                    g;
-    std::unique_ptr<SeparableBranches> phi;
+    Eigen::MatrixXd                  S;
+    Eigen::VectorXd                  g;
+    std::unique_ptr<SeparableEnergy> phi;
 
     // Of the sides: D, and the pieces of the law that are certain (theorem 2).
     std::vector<double>                      shifts;

@@ -104,7 +104,7 @@ namespace Debond
     unsigned int
     least_piece(const unsigned int node) const
     {
-      return law.branches().index(reached(node));
+      return law.pieces().index(reached(node));
     }
 
     /// Calls @p visit(point, stretch, reached) for all points: sums over them

@@ -8,6 +8,8 @@
 
 #include <debond/mesh/bernstein.h>
 
+#include <Eigen/Core>
+
 #include <array>
 #include <vector>
 
@@ -114,6 +116,14 @@ namespace Debond
     n_face_nodes() const
     {
       return n_coefficients(dim, degree);
+    }
+
+    /// What s must not exceed at the nodes: the body does not enter the
+    /// foundation.
+    Eigen::VectorXd
+    upper_bounds() const
+    {
+      return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes.size()));
     }
 
     /// In lexicographic order of their positions.

@@ -81,21 +81,30 @@ namespace Debond
 
     /// j_1 on s <= 0, without a memory.
     const PiecewiseEnergy &
-    branches() const;
+    pieces() const
+    {
+      return minimum;
+    }
 
-    /// The name of bonds on a piece of branches().
+    /// The name of bonds on a piece of pieces().
     const std::string &
-    name(const unsigned int piece) const;
+    name(const unsigned int piece) const
+    {
+      return names[piece];
+    }
 
-    /// Returns whether bonds on a piece of branches() do not pull at all.
+    /// Returns whether bonds on a piece of pieces() do not pull at all.
     bool
-    is_loose(const unsigned int piece) const;
+    is_loose(const unsigned int piece) const
+    {
+      return minimum[piece].is_flat();
+    }
 
     /// Returns whether bonds hold nothing far away.
     bool
     lets_go() const;
 
-    /// The displacement below which bonds are on the last branch, as a positive
+    /// The displacement below which bonds are on the last piece, as a positive
     /// length (the paper's M); zero if there is no other.
     double
     bond_threshold() const;

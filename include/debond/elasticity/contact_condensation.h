@@ -89,6 +89,30 @@ namespace Debond
 
 
 
+  /// The condensed problem, in which @p adhesion is what its Condensation was
+  /// made with; under @p load, or that of the whole problem.
+  template <int dim>
+  PiecewiseProblem
+  condensed_problem(const Condensation          &condensed,
+                    const AdhesionIntegral<dim> &adhesion,
+                    const Eigen::VectorXd       &load)
+  {
+    return {condensed.schur_complement(),
+            load,
+            adhesion.contact_boundary().upper_bounds(),
+            adhesion};
+  }
+
+  template <int dim>
+  PiecewiseProblem
+  condensed_problem(const Condensation          &condensed,
+                    const AdhesionIntegral<dim> &adhesion)
+  {
+    return condensed_problem(condensed, adhesion, condensed.load());
+  }
+
+
+
   /// The normal displacements of the contact nodes under the rigid motions that
   /// only bonds and foundation hold, a column for each: S times them is zero.
   template <int dim>

@@ -7,7 +7,7 @@
 #include <debond/base/dof_vector.h>
 #include <debond/base/views.h>
 #include <debond/contact/boundary.h>
-#include <debond/optimization/objective.h>
+#include <debond/optimization/bundle/direction_problem.h>
 
 #include <vector>
 
@@ -55,11 +55,12 @@ namespace Debond
     void
     add_normal(const VectorView &s, DofVector &u) const;
 
-    /// The unilateral constraint s <= 0 as bounds on degrees of freedom.
+    /// The unilateral constraint as bounds on degrees of freedom.
     UpperBounds
     bounds() const
     {
-      return {{dofs.begin(), dofs.end()}, std::vector<double>(size(), 0.)};
+      const Eigen::VectorXd upper = nodes_and_faces.upper_bounds();
+      return {{dofs.begin(), dofs.end()}, {upper.begin(), upper.end()}};
     }
 
     /// Returns whether u satisfies them.
@@ -70,11 +71,6 @@ namespace Debond
     /// are negative.
     Eigen::VectorXd
     at_rest() const;
-
-    /// Returns the contact space of the same nodes where s itself is the vector
-    /// of all unknowns.
-    ContactSpace
-    condensed() const;
 
   private:
     ContactBoundary<dim>                         nodes_and_faces;

@@ -13,7 +13,7 @@
 namespace Debond
 {
   /// The end of a last piece.
-  constexpr double no_end = -std::numeric_limits<double>::infinity();
+  constexpr double no_end = -infinity;
 
   /// A piece of a function of s <= 0 whose derivative is curvature s + slope,
   /// or, with a decay (1 / length), slope exp(decay (s - upper)), down to its
@@ -35,7 +35,7 @@ namespace Debond
    * quadratics that touch it, one at each s: where it is the least of its
    * pieces, these; elsewhere pieces may be concave. At the kink between two
    * pieces the one on the side of 0 is the one that holds, here and wherever a
-   * branch is chosen.
+   * piece is chosen.
    *
    * What has been at s = reached need not return to what it has left: then f is
    * a parabola about 0 down to there, the secant of the derivative, f(0) is not
@@ -87,8 +87,7 @@ namespace Debond
       {
         const double end  = ds < 0. ? lower : upper;
         const bool   ends = ds < 0. ? std::isfinite(end) : ds > 0. && end < 0.;
-        return ends ? std::max(0., (end - s) / ds) :
-                      std::numeric_limits<double>::infinity();
+        return ends ? std::max(0., (end - s) / ds) : infinity;
       }
 
       /// Returns whether it has the same value everywhere.

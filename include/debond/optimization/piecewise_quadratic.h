@@ -4,6 +4,7 @@
 
 #include <debond/base/interruption.h>
 #include <debond/base/views.h>
+#include <debond/optimization/interval.h>
 
 #include <Eigen/SparseCore>
 
@@ -13,8 +14,8 @@ namespace Debond
   /**
    * A function Phi that is the least of convex quadratics (at each of its
    * quadrature points): one at s lies above Phi everywhere and touches it at s.
-   * s are the normal displacements of the contact nodes in their order, s <= 0,
-   * a length.
+   * s are the normal displacements of the contact nodes in their order, a
+   * length.
    */
   class PiecewiseQuadratic
   {
@@ -63,14 +64,16 @@ namespace Debond
 
 
 
-  /// 1/2 s'S s - g's + Phi(s), s <= 0, with a Phi of a kind of
-  /// PiecewiseQuadratic. Keeps references.
+  /// 1/2 s'S s - g's + Phi(s) over s <= upper with a Phi of a kind of
+  /// PiecewiseQuadratic. Keeps references but for the bounds, which the contact
+  /// space says: infinity is none.
   template <typename Phi>
   struct BoundedProblem
   {
-    MatrixView S;
-    VectorView g;
-    const Phi &phi;
+    MatrixView      S;
+    VectorView      g;
+    Eigen::VectorXd upper;
+    const Phi      &phi;
 
     /// Ends what is done with it.
     const Interruption &interruption = Interruption::by_signal();
@@ -134,15 +137,6 @@ namespace Debond
     const Eigen::SparseMatrix<double> &P;
   };
 
-
-
-  /// The Frobenius norm of a curvature or a difference of such; Eigen's own
-  /// refuses matrices without entries, as bodies without contact have.
-  inline double
-  curvature_norm(const Eigen::SparseMatrix<double> &E)
-  {
-    return E.size() == 0 ? 0. : E.norm();
-  }
 } // namespace Debond
 
 #endif

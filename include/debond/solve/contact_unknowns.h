@@ -22,6 +22,7 @@ namespace Debond
     template <int dim>
     explicit ContactUnknowns(const ElasticProblem<dim> &problem)
       : normals(problem.unknowns().contact().normal_dofs())
+      , bounds(problem.unknowns().contact().boundary().upper_bounds())
       , own(problem.unknowns().dof_handler().locally_owned_dofs())
       , ranks(problem.unknowns().communicator())
     {}
@@ -30,6 +31,13 @@ namespace Debond
     size() const
     {
       return static_cast<unsigned int>(normals.size());
+    }
+
+    /// What s must not exceed.
+    const Eigen::VectorXd &
+    upper() const
+    {
+      return bounds;
     }
 
     /// The entries of v, on all ranks.
@@ -60,6 +68,7 @@ namespace Debond
 
   private:
     const std::vector<dealii::types::global_dof_index> normals;
+    const Eigen::VectorXd                              bounds;
     const dealii::IndexSet                             own;
     const MPI_Comm                                     ranks;
   };

@@ -3,6 +3,7 @@
 #define debond_solve_displacement_problem_h
 
 #include <debond/base/interruption.h>
+#include <debond/optimization/majorise/majorant.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/contact_unknowns.h>
@@ -10,13 +11,13 @@
 namespace Debond
 {
   /**
-   * J = 1/2 <A u, u> - <f, u> + Phi(s), s <= 0, on all unknowns u, of which
+   * J = 1/2 <A u, u> - <f, u> + Phi(s), s <= upper, on all unknowns u, of which
    * some are the normal displacements s. Majorants are minimised by truncated
    * nonsmooth Newton multigrid (Graeser, Sack, Sander, 2009): one Gauss-Seidel
    * step on the contact normals, on all ranks the same; conjugate gradients
    * with a multigrid cycle for all unknowns that are not in contact, to a tenth
-   * of the residual as long as the contact set changes; projection onto s <= 0
-   * and an exact line search.
+   * of the residual as long as the contact set changes; projection onto the
+   * bounds and an exact line search.
    *
    * Residuals are Euclidean norms of forces, relative to the largest of the
    * load, the internal forces and the forces of the foundation. All functions
@@ -26,13 +27,13 @@ namespace Debond
   {
   public:
     /// Keeps references but to @p load; @p start is the current point, of which
-    /// the normal displacements have to be <= 0, @p cycle that of A. Each
-    /// linear iteration asks @p interruption, which ends minimise() and leaves
-    /// u as it was before.
+    /// s has to be within the bounds, @p cycle that of A. Each linear iteration
+    /// asks @p interruption, which ends minimise() and leaves u as it was
+    /// before.
     template <int dim>
     DisplacementProblem(const ElasticProblem<dim> &problem,
                         const DofVector           &load,
-                        const PiecewiseQuadratic  &nonsmooth,
+                        const PiecewiseQuadratic  &phi,
                         TruncatedMultigrid        &cycle,
                         DistributedVector         &start,
                         const Interruption        &interruption);
@@ -77,10 +78,9 @@ namespace Debond
     double largest_force  = 0.; ///< what residuals are relative to
     double force_rounding = 0.; ///< what rounding leaves in A u
 
-    /// The majorant 1/2 <A v, v> - <f, v> + 1/2 s'E s - b_c's + const.
-    Eigen::SparseMatrix<double> E;
-    Eigen::VectorXd             b_c;
-    ActiveSet                   active;
+    /// Of Phi: that of J is 1/2 <A v, v> - <f, v> + 1/2 s'E s - b's + const.
+    Majorant  majorant;
+    ActiveSet active;
 
     /// The majorant and the contact set that the cycle is prepared for.
     bool                        is_prepared = false;

@@ -44,11 +44,9 @@ namespace Debond
                 const Interruption        &interruption,
                 const BranchMonitor       &monitor);
 
-  /// 1/2 s'S s - g's + Phi(s).
+  /// The value of the problem at @p s.
   double
-  condensed_functional(const Condensation       &condensed,
-                       const PiecewiseQuadratic &adhesion,
-                       const VectorView         &s);
+  condensed_functional(const PiecewiseProblem &problem, const VectorView &s);
 } // namespace Debond
 
 #endif

@@ -4,12 +4,13 @@
 
 #include <debond/base/dof_vector.h>
 #include <debond/check/error_estimate.h>
+#include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/probes.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/mesh/body.h>
 #include <debond/mesh/by_region.h>
-#include <debond/solve/functional.h>
+#include <debond/optimization/bundle/functional.h>
 
 #include <memory>
 
@@ -141,7 +142,7 @@ namespace Debond
     }
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
-    const Objective &
+    const Functional &
     functional() const
     {
       return *energy;
@@ -235,7 +236,7 @@ namespace Debond
     std::unique_ptr<ContactQuadrature<dim>>     quadrature;
     std::unique_ptr<BondField<dim>>             bond_field;
     std::unique_ptr<AdhesionIntegral<dim>>      adhesion_integral;
-    std::unique_ptr<Objective>                  energy;
+    std::unique_ptr<Functional>                 energy;
     DofVector                                   first_iterate;
     double                                      seconds_for_mesh;
     double                                      seconds_for_assembly;

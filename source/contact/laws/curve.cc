@@ -55,6 +55,8 @@ namespace Debond
                               opening));
           if (k == 0)
             continue;
+          // An opening twice is a drop, which is allowed; what falls is not a
+          // function.
           require_curve(opening >= curve[k - 1].first,
                         words("has openings that do not fall, as from ",
                               curve[k - 1].first,
@@ -120,6 +122,7 @@ namespace Debond
     end_of_tractions(const TractionCurve &curve)
     {
       std::size_t end = curve.size();
+      // Zeros at the end are one last piece, however many points say so.
       while (end > 1 && curve[end - 1].second == 0. &&
              curve[end - 2].second == 0.)
         --end;
@@ -165,6 +168,8 @@ namespace Debond
       {
         const auto [p, t]       = curve[k];
         const auto [next, last] = curve[k + 1];
+        // A drop is no piece: the two pieces beside it say it by their
+        // tractions there.
         if (p == next)
           {
             n_drops += t != last;
@@ -177,7 +182,10 @@ namespace Debond
             rise    = last / next;
             at_zero = 0.;
           }
+        // The area below the curve.
         energy += 0.5 * (last + t) * (next - p);
+        // Bonds are intact as long as the traction has only risen. What rises
+        // again after a drop is what is left of them, by the number of drops.
         is_intact = is_intact && rise > 0. && n_drops == 0;
         law.pieces.push_back(
           {rise,
@@ -248,9 +256,12 @@ namespace Debond
           const std::string path     = has_file ? file_path : curve_path;
           try
             {
+              // Neither, or both.
               if (has_file == !entries->points.empty())
                 throw std::invalid_argument(
                   "Law = curve needs a Curve or a Curve file, not both");
+              // A file is named relative to the file in which it is named,
+              // whose name stands before the line in the location.
               const std::string    set_at = all.locations().at(file_path);
               ContactLawParameters law    = curve_law(
                 has_file ? read_curve((std::filesystem::path(

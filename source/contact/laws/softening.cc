@@ -39,6 +39,9 @@ namespace Debond
         if (!(number > 0.) || !std::isfinite(number))
           throw std::invalid_argument(
             "bonds that soften need numbers > 0, these have " + data_of(bonds));
+      // Bonds that take less than they have stored at their strength would have
+      // to give back energy: the traction would have to fall while the opening
+      // shrinks.
       const double stored =
         bonds.strength * bonds.strength / (2. * bonds.stiffness);
       if (!(bonds.energy > stored))
@@ -60,12 +63,15 @@ namespace Debond
         const std::string for_winkler =
           "is for Law = winkler: bonds that soften are the same everywhere but "
           "for the Traction factor";
+        // Entries for one boundary have its name behind that of the entry.
         for (const auto &[path, unused] : table.locations())
           for (const std::string &entry :
                {of_stiffness, of_strength, of_energy})
             if (path.compare(0, entry.size() + 1, entry + ' ') == 0 &&
                 table.is_set(path))
               table.reject(path, for_winkler);
+        // A number that is not given here has a default for Law = winkler,
+        // which is none for other laws.
         SofteningBonds bonds   = {};
         bool           has_all = true;
         for (const auto &[path, number] :
@@ -115,8 +121,9 @@ namespace Debond
       {{0., 0.},
          {first, bonds.strength},
          {last > (1. + Tolerance::brittle) * first ? last : first, 0.}});
-    law.name                = "bilinear";
-    law.data                = data_of(bonds);
+    law.name = "bilinear";
+    law.data = data_of(bonds);
+    // The quotient of strength and opening has lost its last digit.
     law.pieces[0].curvature = bonds.stiffness;
     return law;
   }
@@ -131,6 +138,8 @@ namespace Debond
       bonds.strength * bonds.strength / (2. * bonds.stiffness);
     return {"exponential",
             {{bonds.stiffness, 0., -bonds.strength / bonds.stiffness, "bonded"},
+             // The decay with which the area below the falling part is the rest
+             // of the fracture energy, strength / decay.
              {0.,
               -bonds.strength,
               no_end,

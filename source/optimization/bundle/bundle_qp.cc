@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/interval.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +12,11 @@ namespace Debond
   std::string
   to_string(const BundleQP::Status status)
   {
-    switch (status)
-      {
-        case BundleQP::Status::optimal:
-          return "optimal";
-        case BundleQP::Status::inaccurate:
-          return "inaccurate";
-        case BundleQP::Status::iteration_limit:
-          return "iteration limit";
-        case BundleQP::Status::breakdown:
-          return "breakdown";
-      }
-    return "unknown";
+    static const char *const words[] = {"optimal",
+                                        "inaccurate",
+                                        "iteration limit",
+                                        "breakdown"};
+    return words[static_cast<unsigned int>(status)];
   }
 
 
@@ -33,7 +27,7 @@ namespace Debond
     // The comparisons of std::max would lose a NaN.
     return std::isfinite(stationarity + feasibility + complementarity) ?
              std::max({stationarity, feasibility, complementarity}) :
-             std::numeric_limits<double>::infinity();
+             infinity;
   }
 
 
@@ -55,6 +49,7 @@ namespace Debond
   BundleQP::add_cut(const Eigen::Ref<const Eigen::VectorXd> &products,
                     const Eigen::Ref<const Eigen::VectorXd> &bounded_part)
   {
+    // Both triangles are written, so that a column can be read as it stands.
     gram.col(m).head(m + 1) = products;
     gram.row(m).head(m + 1) = products.transpose();
     bounded.col(m)          = bounded_part;
@@ -87,12 +82,20 @@ namespace Debond
         return;
       }
 
+    // The primal active-set method: with the maximum of the dual problem on the
+    // working set as target, multipliers that become zero on the way leave the
+    // set; once the target is reached, the constraint that promises most
+    // enters. At a target that no constraint violates the point is primal
+    // feasible as well, and so the minimum.
     // The dual objective rises from one working set to the next, but for ties:
     // as long as it does there is reason to go on.
+    // A solve from a good working set needs a few changes, one from scratch
+    // about one for each constraint. Ties can let the method go round in
+    // circles.
     const unsigned int patience =
       20 + 2 * (m + static_cast<unsigned int>(mu.size()));
     const unsigned int limit = solution.steps + 10 * patience;
-    double             best  = -std::numeric_limits<double>::infinity();
+    double             best  = -infinity;
     step_limit               = solution.steps + patience;
     while (solution.steps <= step_limit)
       {
@@ -117,6 +120,8 @@ namespace Debond
 
     if (solution.status != Status::optimal)
       {
+        // A solve that failed may leave a working set that its factor does not
+        // have.
         // Whatever was left half done: bounds that have not reached the factor
         // leave the working set, and the factor is made anew next time.
         for (unsigned int i = 0; i < mu.size(); ++i)
@@ -144,6 +149,8 @@ namespace Debond
     solution.steps = 0;
     run_active_set();
 
+    // The residual is computed from the data, not from the factor, so that it
+    // tells what the factor has lost.
     // Errors that the factor has gathered over many updates go with it.
     const auto is_solved = [this]() {
       return solution.residual() < QPTolerance::repair;
@@ -172,6 +179,8 @@ namespace Debond
       solution.lambda(cuts[k]) = lambda(k);
     solution.mu = mu;
 
+    // d = -1/u (sum lambda_j eta_j + mu) on C. Where a bound is active d is the
+    // bound itself, which has no rounding.
     solution.d.setZero(mu.size());
     for (unsigned int k = 0; k < cuts.size(); ++k)
       solution.d -= lambda(k) / u * bounded.col(cuts[k]);
@@ -179,6 +188,8 @@ namespace Debond
       if (bound_active[i])
         solution.d(i) = b(i);
 
+    // eta_j'd: the bounded components of d are known, the others enter by the
+    // Gram matrix.
     solution.slopes.noalias() = bounded.leftCols(m).transpose() * solution.d;
     for (unsigned int k = 0; k < cuts.size(); ++k)
       solution.slopes -= lambda(k) / u * gram.col(cuts[k]).head(m);
@@ -192,6 +203,8 @@ namespace Debond
   std::pair<BundleQP::Entering, unsigned int>
   BundleQP::most_violated() const
   {
+    // On the working set all eta_j'd - beta_j are equal but for rounding, which
+    // their mean by lambda smooths.
     double v = 0.;
     for (unsigned int k = 0; k < cuts.size(); ++k)
       v += lambda(k) * (solution.slopes(cuts[k]) - beta(cuts[k]));
@@ -211,11 +224,16 @@ namespace Debond
       if (!in_set[j])
         {
           const double excess = solution.slopes(j) - beta(j) - v;
+          // The terms of eta_j'd may be far larger than their sum: what is
+          // within their rounding is no violation, and would enter and leave
+          // for ever.
           const double rounding =
             QPTolerance::rounding * (std::sqrt(gram(j, j)) * longest_cut / u +
                                      bounded.col(j).norm() * d_norm + beta(j));
           if (excess > QPTolerance::cut * std::abs(v) + rounding)
             {
+              // The dual function rises by about excess^2 over twice the
+              // curvature along lambda_j.
               const double gain = excess / std::sqrt(h(j, j) + kappa);
               if (gain > largest_gain)
                 {
@@ -237,6 +255,7 @@ namespace Debond
           rounding *= QPTolerance::rounding / u;
           if (excess > QPTolerance::bound * d_largest + rounding)
             {
+              // As above, with the curvature 1/u along mu_i.
               const double gain = excess * std::sqrt(u);
               if (gain > largest_gain)
                 {
@@ -255,6 +274,8 @@ namespace Debond
   {
     const Eigen::VectorXd &x = solution.lambda;
 
+    // Each condition is relative to the largest of the terms that it is a sum
+    // of, as absolute sizes depend on units.
     const Eigen::VectorXd cut_force = bounded.leftCols(m) * x;
     const Eigen::VectorXd cut_force_terms =
       bounded.leftCols(m).cwiseAbs() * x.cwiseAbs();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/interval.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@ namespace Debond
   double
   BundleQP::h(const unsigned int j, const unsigned int k) const
   {
+    // Components at their bounds do not move, so that H is without them.
     return (gram(j, k) + (bounded.col(j).array() * free_bounds.array() *
                           bounded.col(k).array())
                            .sum()) /
@@ -44,10 +46,7 @@ namespace Debond
   Eigen::VectorXd
   BundleQP::bounded_rows(const unsigned int i) const
   {
-    Eigen::VectorXd row(cuts.size());
-    for (unsigned int k = 0; k < cuts.size(); ++k)
-      row(k) = bounded(i, cuts[k]);
-    return row;
+    return bounded(i, cuts).transpose();
   }
 
 
@@ -55,6 +54,10 @@ namespace Debond
   void
   BundleQP::factorize()
   {
+    // H alone is singular as soon as there are more cuts than dimensions, or
+    // cuts that are combinations of each other up to a constant. H + kappa 1 1'
+    // is positive definite where H is on directions with sum lambda = 0, which
+    // is all that the method needs.
     // kappa must be neither so large that the differences of the cuts drown
     // in kappa 1 1', nor so small that 1 1' is lost.
     double       log_sum = 0.;
@@ -65,6 +68,8 @@ namespace Debond
           log_sum += std::log(diagonal);
           ++n_terms;
         }
+    // The geometric mean of the diagonal is the middle of its range, whatever
+    // the lengths of the cuts.
     kappa = n_terms > 0 ? std::exp(log_sum / n_terms) : 1.;
 
     factor.clear();
@@ -106,6 +111,8 @@ namespace Debond
         cuts   = {m - 1};
         lambda = Eigen::VectorXd::Ones(1);
       }
+    // The multipliers of the last solve are a feasible point of this one,
+    // whatever beta, b and u have become.
     lambda /= lambda.sum();
 
     double smallest = std::numeric_limits<double>::max(), largest = 0.;
@@ -115,6 +122,8 @@ namespace Debond
         smallest              = std::min(smallest, diagonal);
         largest               = std::max(largest, diagonal);
       }
+    // Updates keep the factor as cuts and bounds come and go; with another u,
+    // or a kappa that is no longer of the size of H, it is made anew.
     if (!factor_valid || factor_u != u ||
         kappa > QPTolerance::kappa_range * largest ||
         kappa * QPTolerance::kappa_range < smallest)
@@ -128,6 +137,7 @@ namespace Debond
   {
     const unsigned int n = static_cast<unsigned int>(cuts.size());
 
+    // The right side C_B'b_B - beta_W.
     Eigen::VectorXd b_active =
       (b.array() * (1. - free_bounds.array())).matrix();
     Eigen::VectorXd right_side(n);
@@ -154,6 +164,7 @@ namespace Debond
 
     // With K = H + kappa 1 1', H lambda + v 1 = r becomes
     // K lambda = r + (kappa sum lambda - v) 1.
+    // So lambda = K^{-1} r + c K^{-1} 1, with the c for which the sum is 1.
     Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
     factor.solve_in_place(ones);
     const double ones_K_ones = ones.sum();
@@ -163,6 +174,8 @@ namespace Debond
     Eigen::VectorXd residual = right_side;
     double          missing  = 1.;
     double          previous = std::numeric_limits<double>::max();
+    // Refined by residuals with H itself: the factor has gathered rounding over
+    // its updates, and kappa 1 1' hides the last digits of H.
     for (unsigned int refinement = 0; refinement < 4; ++refinement)
       {
         Eigen::VectorXd correction = residual;
@@ -189,6 +202,8 @@ namespace Debond
           break;
       }
 
+    // mu is what stationarity of the active components leaves: u d_i + sum
+    // lambda_j eta_ji + mu_i = 0 with d_i = b_i.
     for (unsigned int i = 0; i < mu.size(); ++i)
       if (bound_active[i])
         {
@@ -208,15 +223,16 @@ namespace Debond
   bool
   BundleQP::move_towards(const DualPoint &target, const bool direction_only)
   {
+    // The longest step at which no multiplier is negative; the first one to
+    // become zero blocks.
     const unsigned int    n = static_cast<unsigned int>(cuts.size());
     const Eigen::VectorXd lambda_step =
       direction_only ? target.lambda : Eigen::VectorXd(target.lambda - lambda);
     const Eigen::VectorXd mu_step =
       direction_only ? target.mu : Eigen::VectorXd(target.mu - mu);
 
-    constexpr double infinity     = std::numeric_limits<double>::infinity();
-    double           length       = direction_only ? infinity : 1.;
-    int              blocking_cut = -1, blocking_bound = -1;
+    double length       = direction_only ? infinity : 1.;
+    int    blocking_cut = -1, blocking_bound = -1;
     for (unsigned int k = 0; k < n; ++k)
       if (lambda_step(k) < 0. && -lambda_step(k) * length > lambda(k))
         {
@@ -229,6 +245,9 @@ namespace Debond
           length         = mu(i) / -mu_step(i);
           blocking_bound = i;
         }
+    // Along a direction in the null space of H the dual objective does not
+    // fall. With no multiplier to block it would rise for ever, and the primal
+    // problem have no feasible point; but d = 0 is one, so this is rounding.
     if (length == infinity)
       {
         solution.status = Status::breakdown;
@@ -271,6 +290,8 @@ namespace Debond
     bound_active[i] = 0;
     free_bounds(i)  = 1.;
     mu(i)           = 0.;
+    // Component i counts in H again: a rank-one term is added, which is always
+    // possible.
     factor.update(bounded_rows(i).head(factor.size()) / std::sqrt(u));
     ++solution.steps;
   }
@@ -301,6 +322,10 @@ namespace Debond
             QPTolerance::independence)
           return true;
 
+        // Cut j is a combination of those in the set: H has a null vector, the
+        // combination less e_j, with the sum 0. Along it the objective is
+        // linear and rises, until some multiplier is zero and its constraint
+        // leaves.
         factor.solve_in_place(column);
         DualPoint direction{Eigen::VectorXd(n + 1),
                             Eigen::VectorXd::Zero(mu.size())};
@@ -329,6 +354,8 @@ namespace Debond
     while (true)
       {
         const Eigen::VectorXd row = bounded_rows(i);
+        // Component i leaves H: a rank-one term is taken off, which fails if
+        // nothing positive definite is left.
         if (factor.downdate(row / std::sqrt(u), QPTolerance::independence) >
             QPTolerance::independence)
           {

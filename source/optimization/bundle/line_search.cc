@@ -11,16 +11,8 @@ namespace Debond
   std::string
   to_string(const StepKind kind)
   {
-    switch (kind)
-      {
-        case StepKind::long_step:
-          return "long";
-        case StepKind::short_step:
-          return "short";
-        case StepKind::null_step:
-          return "null";
-      }
-    return "unknown";
+    static const char *const words[] = {"long", "short", "null"};
+    return words[static_cast<unsigned int>(kind)];
   }
 
 
@@ -35,15 +27,17 @@ namespace Debond
     /// t_L and J(x_k + t_L d_k) - J(x_k) by the given rule; zero if there is
     /// no descent.
     void
-    find_descent(const LineRestriction          &line,
+    find_descent(const Functional::Line         &line,
                  const double                    v,
                  const ProximalBundleParameters &parameters,
                  LineSearchResult               &result)
     {
+      // (14).
       const auto descends = [&](const double t, const double change) {
         return change <= parameters.m_L * t * v;
       };
 
+      // The first of 1, 1/2, 1/4, ... with (14).
       double t = 1., change = line.change(t), change_at_twice_t = change;
       while (!descends(t, change))
         {
@@ -54,6 +48,7 @@ namespace Debond
           change            = line.change(t);
         }
 
+      // On along the sequence as long as J falls.
       if (parameters.line_search == DescentRule::minimum)
         for (double half = line.change(0.5 * t);
              half < change && descends(0.5 * t, half) && t > Tolerance::no_step;
@@ -86,6 +81,8 @@ namespace Debond
         }
       else if (parameters.line_search == DescentRule::largest)
         {
+          // The paper's words: between t, which has (14), and 2 t, which has
+          // not.
           double upper = 2. * t;
           for (unsigned int i = 0; i < maximum_bisections; ++i)
             {
@@ -106,7 +103,7 @@ namespace Debond
 
 
   LineSearchResult
-  line_search(const LineRestriction          &line,
+  line_search(const Functional::Line         &line,
               const DofVector                &d,
               const double                    d_norm,
               const double                    v,
@@ -116,6 +113,8 @@ namespace Debond
     LineSearchResult result;
     find_descent(line, v, parameters, result);
 
+    // The new subgradient at y_{k+1} with its alpha and beta as seen from
+    // x_{k+1}.
     const auto evaluate = [&](const double t_R, const double change) {
       result.t_R = t_R;
       line.subgradient(t_R, eta);
@@ -127,6 +126,7 @@ namespace Debond
                              parameters.gamma * distance * distance);
     };
 
+    // A long step takes y_{k+1} = x_{k+1}.
     if (result.t_L >= parameters.t_bar)
       {
         result.kind = StepKind::long_step;
@@ -135,7 +135,11 @@ namespace Debond
         return result;
       }
 
-    result.kind  = result.t_L > 0. ? StepKind::short_step : StepKind::null_step;
+    // A short step or a null step needs a t_R > t_L with (15).
+    result.kind = result.t_L > 0. ? StepKind::short_step : StepKind::null_step;
+    // Near t_L there may be only subgradients that predict the descent; beyond
+    // the discontinuity of the gradient that ended it there are steep ones.
+    // Bisection goes between both.
     double lower = result.t_L;
     double upper = result.t_L > 0. ? 2. * result.t_L : 1.;
     for (unsigned int i = 0; i < maximum_bisections; ++i)

@@ -12,11 +12,11 @@
 
 namespace Debond
 {
-  MetricDirection::MetricDirection(const MatrixView         &metric,
-                                   const PiecewiseQuadratic &nonsmooth,
-                                   const unsigned int        bundle_size)
-    : S(metric)
-    , phi(nonsmooth)
+  MetricDirection::MetricDirection(const PiecewiseProblem &problem,
+                                   const unsigned int      bundle_size)
+    : S(problem.S)
+    , upper(problem.upper)
+    , phi(problem.phi)
     , eta(S.rows(), bundle_size)
     , active(S.rows(), 0)
   {}
@@ -26,9 +26,7 @@ namespace Debond
   bool
   MetricDirection::is_feasible(const DofVector &x) const
   {
-    return std::all_of(x.begin(), x.end(), [](const double s) {
-      return s <= 0.;
-    });
+    return (eigen_view(x).array() <= upper.array()).all();
   }
 
 
@@ -39,9 +37,14 @@ namespace Debond
     const unsigned int n = x.size();
     Eigen::MatrixXd    M = S;
     M += phi.curvature(eigen_view(x));
-    const Eigen::VectorXd b = -eigen_view(x);
+    const Eigen::VectorXd b = upper - eigen_view(x);
     const auto            G = eta.leftCols(m);
 
+    // For a given active set of bounds d is known by the multipliers lambda of
+    // the cuts, and these solve a BundleQP without bounds in the Gram matrix of
+    // the cuts with M_ff^{-1}. The outer loop changes the active set by the
+    // signs of mu and of d - b, as one would for a plain bound-constrained
+    // problem.
     ActiveSetRule      rule;
     Eigen::VectorXd    mu;
     Eigen::VectorXd    force_terms; // of the stationarity condition
@@ -72,6 +75,8 @@ namespace Debond
         BundleQP              qp(m, 0);
         for (unsigned int j = 0; j < m; ++j)
           qp.add_cut(H.col(j).head(j + 1), Eigen::VectorXd());
+        // A cut's value at d, eta_j'd - beta_j, is here that of the free part
+        // by the QP, and the rest is a constant of this active set.
         const Eigen::VectorXd shifted_beta =
           beta + G_free.transpose() * x_b - G.transpose() * d;
         inner = qp.solve(shifted_beta, Eigen::VectorXd(), 1.);
@@ -80,6 +85,8 @@ namespace Debond
         for (unsigned int k = 0; k < free.size(); ++k)
           d(free[k]) = d_free(k);
 
+        // Stationarity M d + G lambda + mu = 0 gives the multipliers of active
+        // bounds.
         mu = -(G * inner.lambda + M * d);
         force_terms =
           G.cwiseAbs() * inner.lambda.cwiseAbs() + M.cwiseAbs() * d.cwiseAbs();
@@ -97,6 +104,8 @@ namespace Debond
     solution.status = settled ? to_string(inner.status) : "iteration limit";
     solution.slopes = G.transpose() * d;
     solution.v      = (solution.slopes - beta).maxCoeff();
+    // Bounds are complementary to rounding, so that the cuts alone make the
+    // gap.
     solution.duality_gap = inner.lambda.dot(
       (solution.v + beta.array() - solution.slopes.array()).matrix());
 
@@ -141,8 +150,8 @@ namespace Debond
   void
   MetricDirection::project(DofVector &x) const
   {
-    for (double &s : x)
-      s = std::min(s, 0.);
+    for (unsigned int i = 0; i < x.size(); ++i)
+      x(i) = std::min(x(i), upper(i));
   }
 
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/line_search.h>
@@ -8,7 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <iomanip>
 #include <stdexcept>
 
 namespace Debond
@@ -57,6 +58,8 @@ namespace Debond
       void
       add(const DofVector &eta) override
       {
+        // The bounded components go to the QP and out of the vector that inner
+        // products are made of.
         const unsigned int j   = size();
         DofVector         &cut = subgradients[j];
         cut                    = eta;
@@ -67,6 +70,7 @@ namespace Debond
             bounded(i)             = cut(bounds.indices[i]);
             cut(bounds.indices[i]) = 0.;
           }
+        // One row of the Gram matrix for each new cut: the others are known.
         Eigen::VectorXd products(j + 1);
         for (unsigned int k = 0; k <= j; ++k)
           products(k) = subgradients[k] * cut;
@@ -76,6 +80,7 @@ namespace Debond
       const Solution &
       solve(const DofVector &x, const Eigen::VectorXd &beta) override
       {
+        // In terms of d the bounds are d_i <= upper_i - x_i.
         Eigen::VectorXd b(bounds.indices.size());
         for (unsigned int i = 0; i < bounds.indices.size(); ++i)
           b(i) = bounds.upper[i] - x(bounds.indices[i]);
@@ -113,6 +118,7 @@ namespace Debond
         if (active.size() % 2 == 1)
           d.add(factor(static_cast<unsigned int>(active.size()) - 1),
                 subgradients[active.back()]);
+        // The QP knows these to the last digit.
         for (unsigned int i = 0; i < bounds.indices.size(); ++i)
           d(bounds.indices[i]) = d_bounded(i);
       }
@@ -217,6 +223,9 @@ namespace Debond
            const LineSearchResult &step,
            const double            d_length)
       {
+        // alpha_j = J(x) - J(y_j) - eta_j'(x - y_j) changes with x by the
+        // change of J less eta_j'(x_{k+1} - x_k). The way s_j grows by the
+        // length of the step, whatever its direction: it is a sum of lengths.
         const unsigned int m = size();
         alpha.head(m) +=
           (step.change - step.t_L * solution.slopes.array()).matrix();
@@ -236,67 +245,93 @@ namespace Debond
     bool
     is_usable(const DofVector &eta)
     {
+      // Squares of larger numbers and sums of these may be infinite.
       constexpr double largest = 1e140;
       return eta.linfty_norm() < largest && std::isfinite(eta * eta);
     }
 
 
 
-    std::string
-    failure_message(const SolverStatus              status,
-                    const double                    v,
-                    const double                    qp_residual,
-                    const std::string              &qp_status,
-                    const ProximalBundleParameters &parameters)
+    /// Adds the wall time from its construction to its end.
+    class Stopwatch
     {
-      std::ostringstream text;
-      text.precision(3);
+    public:
+      explicit Stopwatch(double &seconds)
+        : seconds(seconds)
+      {}
+
+      ~Stopwatch()
+      {
+        seconds += timer.wall_time();
+      }
+
+    private:
+      double       &seconds;
+      dealii::Timer timer;
+    };
+
+
+
+    /// What to say of an end that is none with success, which @p direction, the
+    /// last one, led to.
+    std::string
+    failure_message(const SolverStatus                status,
+                    const DirectionProblem::Solution &direction,
+                    const ProximalBundleParameters   &parameters)
+    {
+      const auto three_digits = std::setprecision(3);
       switch (status)
         {
           case SolverStatus::iteration_limit:
-            text << "proximal bundle method: predicted descent " << v
-                 << " after " << parameters.maximum_iterations
-                 << " iterations, required is at least "
-                 << -parameters.epsilon_s
-                 << ". Try another proximal weight, more iterations, a larger "
-                    "bundle or a larger stop tolerance.";
-            break;
+            return words(three_digits,
+                         "proximal bundle method: predicted descent ",
+                         direction.v,
+                         " after ",
+                         parameters.maximum_iterations,
+                         " iterations, required is at least ",
+                         -parameters.epsilon_s,
+                         ". Try another proximal weight, more iterations, a "
+                         "larger bundle or a larger stop tolerance.");
           case SolverStatus::line_search:
-            text << "line search: no subgradient with slope above m_R v_k = "
-                 << parameters.m_R * v << " was found, predicted descent is "
-                 << v << ", required is at least " << -parameters.epsilon_s
-                 << ". Try a larger proximal weight or stop tolerance.";
-            break;
+            return words(three_digits,
+                         "line search: no subgradient with slope above m_R "
+                         "v_k = ",
+                         parameters.m_R * direction.v,
+                         " was found, predicted descent is ",
+                         direction.v,
+                         ", required is at least ",
+                         -parameters.epsilon_s,
+                         ". Try a larger proximal weight or stop tolerance.");
           case SolverStatus::quadratic_program:
-            text
-              << "bundle QP, which ended as '" << qp_status
-              << "': relative residual " << qp_residual
-              << ", required is at most " << Tolerance::direction
-              << ". Try a larger proximal weight (it has units: energy per squared "
-                 "length) or a smaller bundle size.";
-            break;
+            return words(three_digits,
+                         "bundle QP, which ended as '",
+                         direction.status,
+                         "': relative residual ",
+                         direction.residual,
+                         ", required is at most ",
+                         Tolerance::direction,
+                         ". Try a larger proximal weight (it has units: energy "
+                         "per squared length) or a smaller bundle size.");
           case SolverStatus::not_finite:
-            text << "objective: the functional or its subgradient is not a "
-                    "finite number. Check the data of the scene.";
-            break;
+            return "objective: the functional or its subgradient is not a "
+                   "finite number. Check the data of the scene.";
           case SolverStatus::interrupted:
-            text << "proximal bundle method: predicted descent " << v
-                 << ", required is at least " << -parameters.epsilon_s << '.';
-            break;
-          case SolverStatus::stagnated:  // has no test for it
-          case SolverStatus::no_descent: // the line search sees to it
-          case SolverStatus::comes_off:  // only supported bodies get here
-          case SolverStatus::success:
-            break;
+            return words(three_digits,
+                         "proximal bundle method: predicted descent ",
+                         direction.v,
+                         ", required is at least ",
+                         -parameters.epsilon_s,
+                         '.');
+          default: // the others are no ends of this method
+            return "";
         }
-      return text.str();
     }
   } // namespace
 
 
 
   ProximalBundleResult
-  ProximalBundle::minimize(const Objective   &objective,
+  ProximalBundle::minimize(const Functional  &functional,
                            const UpperBounds &bounds,
                            DofVector         &x,
                            const Monitor     &monitor) const
@@ -305,13 +340,13 @@ namespace Debond
                                          bounds,
                                          parameters.bundle_size,
                                          x);
-    return minimize(objective, direction_problem, x, monitor);
+    return minimize(functional, direction_problem, x, monitor);
   }
 
 
 
   ProximalBundleResult
-  ProximalBundle::minimize(const Objective  &objective,
+  ProximalBundle::minimize(const Functional &functional,
                            DirectionProblem &direction_problem,
                            DofVector        &x,
                            const Monitor    &monitor) const
@@ -321,140 +356,119 @@ namespace Debond
         "The start of the bundle method must satisfy the bounds.");
 
     ProximalBundleResult result;
+    DofVector            eta(x), d(x);
+    Bundle               bundle(direction_problem, parameters.bundle_size);
 
-    dealii::Timer qp_timer, objective_timer, algebra_timer;
-    qp_timer.stop();
-    objective_timer.stop();
-    algebra_timer.stop();
-
-    DofVector eta(x), d(x);
-
-    Bundle     bundle(direction_problem, parameters.bundle_size);
+    // x_1 = y_1, and again from x_k once the bundle is full: the subgradient
+    // there is all that is known.
     const auto restart = [&]() {
       bundle.clear();
-      result.functional = objective.value(x);
-      objective.subgradient(x, eta);
+      result.functional = functional.value(x);
+      functional.subgradient(x, eta);
       if (is_usable(eta))
         bundle.add(eta, 0., 0.);
     };
-    restart();
+    // Old subgradients may be to blame for a failure: once more without them.
+    const auto is_restarted = [&]() {
+      const bool has_old = bundle.size() > 1;
+      if (has_old)
+        restart();
+      return has_old;
+    };
+    Bundle::Solution direction;
+    const auto       finish = [&](const SolverStatus status) {
+      result.status     = status;
+      result.functional = functional.value(x);
+      result.message    = failure_message(status, direction, parameters);
+      return result;
+    };
 
-    const Bundle::Solution *direction = nullptr;
+    restart();
     while (true)
       {
         if (!std::isfinite(result.functional) || !is_usable(eta))
-          {
-            result.status = SolverStatus::not_finite;
-            break;
-          }
-        qp_timer.start();
-        direction = &bundle.solve(x, parameters.gamma);
-        qp_timer.stop();
-        result.v = direction->v;
-        if (!std::isfinite(result.v) || !direction->slopes.allFinite())
-          {
-            result.status = SolverStatus::not_finite;
-            break;
-          }
+          return finish(SolverStatus::not_finite);
 
-        // d = 0 is feasible, so a positive v is a failure of the QP.
-        if (result.v - direction->duality_gap >= -parameters.epsilon_s &&
-            result.v <= parameters.epsilon_s)
+        // Direction finding: Problem QP for (d_k, v_k).
+        {
+          const Stopwatch clock(result.qp_seconds);
+          direction = bundle.solve(x, parameters.gamma);
+        }
+        result.v = direction.v;
+        if (!std::isfinite(direction.v) || !direction.slopes.allFinite())
+          return finish(SolverStatus::not_finite);
+
+        // Stop criterion: v_k >= -epsilon_s, for the exact v_k too. As d = 0 is
+        // feasible, a positive v_k is a failure of the QP.
+        if (direction.v - direction.duality_gap >= -parameters.epsilon_s &&
+            direction.v <= parameters.epsilon_s)
+          return finish(SolverStatus::success);
+        if (direction.v > parameters.epsilon_s ||
+            !(direction.residual <= Tolerance::direction))
           {
-            result.status = SolverStatus::success;
-            break;
-          }
-        if (result.v > parameters.epsilon_s ||
-            !(direction->residual <= Tolerance::direction))
-          {
-            // Old subgradients may be to blame: once more without them.
-            if (bundle.size() > 1)
-              {
-                restart();
-                continue;
-              }
-            result.status = SolverStatus::quadratic_program;
-            break;
+            if (is_restarted())
+              continue;
+            return finish(SolverStatus::quadratic_program);
           }
         result.largest_qp_residual =
-          std::max(result.largest_qp_residual, direction->residual);
+          std::max(result.largest_qp_residual, direction.residual);
         if (result.iterations() >= parameters.maximum_iterations)
-          {
-            result.status = SolverStatus::iteration_limit;
-            break;
-          }
+          return finish(SolverStatus::iteration_limit);
+        double d_length;
+        {
+          const Stopwatch clock(result.linear_algebra_seconds);
+          direction_problem.direction(d);
+          d_length = direction_problem.length(d);
+        }
 
-        algebra_timer.start();
-        direction_problem.direction(d);
-        const double d_length = direction_problem.length(d);
-        algebra_timer.stop();
-
-        objective_timer.start();
-        const auto             line = objective.along(x, d);
-        const LineSearchResult step =
-          line_search(*line, d, d_length, result.v, parameters, eta);
-        objective_timer.stop();
+        // Line search: t_L with (14) and t_R with (15), where eta is eta_{k+1}.
+        LineSearchResult step;
+        {
+          const Stopwatch clock(result.objective_seconds);
+          step = line_search(Functional::Line(functional, x, d),
+                             d,
+                             d_length,
+                             direction.v,
+                             parameters,
+                             eta);
+        }
         if (!step.success)
           {
-            // Old subgradients may be to blame: once more without them.
-            if (bundle.size() > 1)
-              {
-                restart();
-                continue;
-              }
-            result.status = SolverStatus::line_search;
-            break;
+            if (is_restarted())
+              continue;
+            return finish(SolverStatus::line_search);
           }
+        const unsigned int size = bundle.size();
 
-        BundleIteration iteration;
-        iteration.iteration   = result.iterations() + 1;
-        iteration.v           = result.v;
-        iteration.t_L         = step.t_L;
-        iteration.t_R         = step.t_R;
-        iteration.bundle_size = bundle.size();
-        iteration.qp_steps    = direction->steps;
-        iteration.kind        = step.kind;
-
-        algebra_timer.start();
-        if (step.t_L > 0.)
-          {
-            x.add(step.t_L, d);
-            direction_problem.project(x);
-            result.functional += step.change;
-            bundle.move(*direction, step, d_length);
-          }
-
-        if (bundle.full())
-          restart();
-        else if (is_usable(eta))
-          bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
-        algebra_timer.stop();
+        // x_{k+1}, with alpha_j and s_j there, and the new subgradient.
+        {
+          const Stopwatch clock(result.linear_algebra_seconds);
+          if (step.t_L > 0.)
+            {
+              x.add(step.t_L, d);
+              direction_problem.project(x);
+              result.functional += step.change;
+              bundle.move(direction, step, d_length);
+            }
+          if (bundle.full())
+            restart();
+          else if (is_usable(eta))
+            bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
+        }
 
         result.long_steps += step.kind == StepKind::long_step;
         result.short_steps += step.kind == StepKind::short_step;
         result.null_steps += step.kind == StepKind::null_step;
-        iteration.functional = result.functional;
-        result.history.push_back(iteration);
-        if (monitor && !monitor(iteration))
-          {
-            result.status = SolverStatus::interrupted;
-            break;
-          }
+        result.history.push_back({result.iterations() + 1,
+                                  result.functional,
+                                  direction.v,
+                                  step.t_L,
+                                  step.t_R,
+                                  size,
+                                  direction.steps,
+                                  step.kind});
+        if (monitor && !monitor(result.history.back()))
+          return finish(SolverStatus::interrupted);
       }
-
-    result.functional = objective.value(x);
-    if (result.status != SolverStatus::success)
-      result.message =
-        failure_message(result.status,
-                        result.v,
-                        direction != nullptr ? direction->residual : 0.,
-                        direction != nullptr ? direction->status :
-                                               "not started",
-                        parameters);
-    result.qp_seconds             = qp_timer.wall_time();
-    result.objective_seconds      = objective_timer.wall_time();
-    result.linear_algebra_seconds = algebra_timer.wall_time();
-    return result;
   }
-
 } // namespace Debond

@@ -34,9 +34,9 @@ namespace Debond
 
       /// From the node's relaxation by majorise-minimise, unless its state had
       /// been tried.
-      BranchState     state;
+      PieceState      state;
       Eigen::VectorXd s;
-      double          value = std::numeric_limits<double>::infinity();
+      double          value = infinity;
     };
 
 
@@ -54,11 +54,13 @@ namespace Debond
         : parameters(parameters)
         , problem(problem)
         , n(static_cast<unsigned int>(problem.g.size()))
-        , node_bound(problem.S, problem.g, problem.phi)
-        , least_left_out(std::numeric_limits<double>::infinity())
+        , node_bound(problem)
+        , least_left_out(infinity)
       {
-        result.upper = std::numeric_limits<double>::infinity();
-        result.lower = -std::numeric_limits<double>::infinity();
+        result.upper = infinity;
+        result.lower = -infinity;
+        // There is a best value from the beginning, without which nothing could
+        // be left out.
         Job job;
         minimise_from(start, job);
         take_if_better(job);
@@ -67,6 +69,8 @@ namespace Debond
       BranchAndBoundResult
       run()
       {
+        // The cheapest proof first: most minima of well supported bodies are
+        // proved by one factorisation at the minimum.
         const double at_start = node_bound.bound_at(result.s);
         if (at_start >= result.upper - parameters.tolerance)
           {
@@ -79,6 +83,7 @@ namespace Debond
             auto root = node_bound.root(result.upper);
             if (!root)
               return result;
+            // Both are bounds for all points, of which the better one counts.
             root->bound = std::max(root->bound, at_start);
             open.insert(*root);
             result.status = ProofStatus::proved;
@@ -94,6 +99,9 @@ namespace Debond
             result.status = check_limits();
             if (result.status != ProofStatus::proved)
               break;
+            // Nodes of a batch do not see what the others find, so that they
+            // can be bounded at the same time. The results are taken in the
+            // order of the batch, whatever the order in which threads end.
             std::vector<Job> batch = next_batch();
             work_on(batch);
             for (const Job &job : batch)
@@ -105,6 +113,8 @@ namespace Debond
                 else
                   branch(job);
               }
+            // Only whole batches count, so that a limit of nodes ends at the
+            // same node on all machines.
             result.nodes += static_cast<unsigned int>(batch.size());
             if ((problem.interruption.requested()) && !open.empty())
               result.status = ProofStatus::interrupted;
@@ -114,6 +124,9 @@ namespace Debond
                 next_record = result.nodes + 1 + result.nodes / 10;
               }
           }
+        // What has been left out has values above the tolerance or is counted
+        // in least_left_out; if rounding left more than the tolerance between
+        // the bounds, there is no proof.
         const ProofProgress end = progress();
         if (result.status == ProofStatus::proved &&
             result.upper - end.lower > parameters.tolerance)
@@ -133,19 +146,22 @@ namespace Debond
       const Clock::time_point begin = Clock::now();
       BranchAndBoundResult    result;
       std::set<ProofNode>     open;
-      std::set<BranchState>   tried; ///< states that were minimised
+      std::set<PieceState>    tried; ///< states that were minimised
       double                  least_left_out;
       unsigned int            n_created = 0;
 
       void
       minimise_from(const Eigen::VectorXd &x, Job &job) const
       {
+        // A lower point, if there is one near, improves the bounds of all nodes
+        // to come. From a state that was minimised before nothing new comes.
         job.state = problem.phi.state(x);
         // Where bonds soften the state does not say where it leads to.
         if (!problem.phi.softens() && tried.count(job.state) > 0)
           return;
-        Eigen::VectorXd  s = x.cwiseMin(0.);
-        CondensedProblem condensed(problem.S, problem.g, problem.phi, s);
+        Eigen::VectorXd  s = x.cwiseMin(problem.upper);
+        CondensedProblem condensed(
+          {problem.S, problem.g, problem.upper, problem.phi}, s);
         MajoriseMinimise({}).minimize(condensed);
         const double value = condensed.evaluate().functional;
         if (value < job.value)
@@ -169,6 +185,8 @@ namespace Debond
       ProofStatus
       check_limits() const
       {
+        // Nodes first, which is the same everywhere; time and memory depend on
+        // the machine, and on ranks the slowest one decides.
         if (result.nodes >= parameters.maximum_nodes)
           return ProofStatus::node_limit;
         if (any_rank(seconds() > parameters.maximum_seconds))
@@ -189,6 +207,8 @@ namespace Debond
           {
             batch.emplace_back();
             batch.back().node = open.extract(open.begin()).value();
+            // No point in it is lower by more than the tolerance: it is left
+            // out, and its bound counts for the answer.
             if (batch.back().node.bound >= result.upper - parameters.tolerance)
               {
                 least_left_out =
@@ -202,6 +222,8 @@ namespace Debond
       void
       work_on(std::vector<Job> &batch) const
       {
+        // Each thread takes the next node that none has taken: nodes differ in
+        // their number of relaxations.
         std::atomic<unsigned int> next(0);
         const auto                work = [&]() {
           for (unsigned int k = next++; k < batch.size(); k = next++)
@@ -231,6 +253,8 @@ namespace Debond
             least_left_out = std::min(least_left_out, job.result.least);
             return;
           }
+        // Two boxes, one above the place to split and one below, with the
+        // bounds that each half has beyond that of the whole.
         const unsigned int i     = *job.result.unknown;
         ProofNode          upper = job.node, lower = job.node;
         upper.number   = ++n_created;
@@ -252,6 +276,8 @@ namespace Debond
       ProofProgress
       progress() const
       {
+        // The least of what is open and of what was left out is below all
+        // values.
         double lower = std::min(result.upper, least_left_out);
         if (!open.empty())
           lower = std::min(lower, open.begin()->bound);

@@ -17,7 +17,7 @@ namespace Debond
 
     /// States on the ways of trials are remembered until they have so many
     /// nodes in all, which takes some 100 MB.
-    constexpr std::size_t most_branches_on_ways = 20000000;
+    constexpr std::size_t most_pieces_on_ways = 20000000;
 
     /// What a node of branch and bound takes, to the cube of the unknowns, in
     /// the time of a factorisation's operations (measured on 159 unknowns).
@@ -36,14 +36,7 @@ namespace Debond
 
 
 
-    CondensedProblem
-    condensed(const SearchProblem &problem, Eigen::VectorXd &s)
-    {
-      return CondensedProblem(problem.S, problem.g, problem.phi, s);
-    }
-
-
-
+    /// One search_branches(). A state is the pieces that the unknowns are on.
     class StateSearch
     {
     public:
@@ -57,7 +50,9 @@ namespace Debond
             is_diagonal(problem.phi.curvature(Eigen::VectorXd::Zero(s.size()))))
         , states_are_majorants(is_separable && !problem.phi.softens())
       {
-        const auto state  = condensed(problem, s).evaluate();
+        // Differences within the rounding of J are no improvements: taken, they
+        // would let the search go round in circles.
+        const auto state  = CondensedProblem(problem, s).evaluate();
         result.functional = state.functional;
         rounding          = state.functional_rounding;
         tried.insert(problem.lumped.state(s));
@@ -73,17 +68,21 @@ namespace Debond
         NodeSet               all;
         for (unsigned int i = 0; i < s.size(); ++i)
           all.insert(all.end(), i);
-        std::vector<BranchMove> starts;
+        // All nodes on the last piece, the one before, and so on, and all on
+        // the first: minima with much or little broken, far from the given one.
+        std::vector<PieceMove> starts;
         for (unsigned int piece = n_pieces; piece-- > 1;)
           starts.push_back({piece, all, {}});
         starts.push_back({1, {}, all});
-        for (const BranchMove &start : starts)
+        for (const PieceMove &start : starts)
           {
             Eigen::VectorXd point = given;
             if (parameters.starts && may_go_on() &&
                 attempt(start, MoveKind::start, point))
               descend(point);
           }
+        // The given point has had no moves yet, and is where the lowest minimum
+        // mostly is.
         functional = given_functional;
         descend(given);
         return result;
@@ -99,7 +98,8 @@ namespace Debond
       double                        functional = 0.; ///< where moves start
       double                        rounding;
       unsigned int                  n_pieces = 0;
-      std::set<BranchState>         tried;
+      // States that trials have started from or ended in.
+      std::set<PieceState> tried;
 
       /// A minimum that a trial has ended in.
       struct End
@@ -107,8 +107,8 @@ namespace Debond
         double          functional;
         Eigen::VectorXd s;
       };
-      std::vector<End>                   ends;
-      std::map<BranchState, std::size_t> end_of_way; ///< by states on the way
+      std::vector<End>                  ends;
+      std::map<PieceState, std::size_t> end_of_way; ///< by states on the way
 
       bool
       may_go_on()
@@ -122,6 +122,7 @@ namespace Debond
       void
       descend(Eigen::VectorXd point)
       {
+        // Patches first: they find most, and are few.
         while (move_patches(point) || move_by_stretch(point))
           ;
       }
@@ -131,11 +132,11 @@ namespace Debond
       bool
       move_patches(Eigen::VectorXd &point)
       {
-        for (BranchMove move : moves_from(problem.lumped.state(point),
-                                          problem.neighbours,
-                                          n_pieces,
-                                          parameters.maximum_shift,
-                                          parameters.flips))
+        for (PieceMove move : moves_from(problem.lumped.state(point),
+                                         problem.neighbours,
+                                         n_pieces,
+                                         parameters.maximum_shift,
+                                         parameters.flips))
           {
             if (!may_go_on())
               return false;
@@ -159,9 +160,10 @@ namespace Debond
       bool
       move_by_stretch(Eigen::VectorXd &point)
       {
+        // A search of starts alone has no moves.
         if (parameters.maximum_shift == 0)
           return false;
-        for (const BranchMove &move :
+        for (const PieceMove &move :
              moves_by_stretch(problem.lumped.state(point), point, n_pieces))
           if (!may_go_on())
             return false;
@@ -184,21 +186,25 @@ namespace Debond
       /// Minimises from the changed state. Returns whether the functional is
       /// below that of @p point, which then moves.
       bool
-      attempt(const BranchMove &move,
-              const MoveKind    kind,
-              Eigen::VectorXd  &point)
+      attempt(const PieceMove &move,
+              const MoveKind   kind,
+              Eigen::VectorXd &point)
       {
         const std::vector<PiecewiseEnergy> &f = problem.lumped.f;
 
+        // The nodes of the move go inside the piece, from where majorise-
+        // minimise takes them to a minimum that has them there, if there is
+        // one.
         Eigen::VectorXd next = point;
-        // Where there are no bonds no branch is to be left.
+        // Where there are no bonds no piece is to be left.
         for (const unsigned int i : move.down)
           if (move.piece < f[i].size())
             next(i) = std::min(next(i), f[i].point_inside(move.piece));
         for (const unsigned int i : move.up)
           if (move.piece < f[i].size())
             next(i) = std::max(next(i), f[i].point_inside(move.piece - 1));
-        const BranchState start = problem.lumped.state(next);
+        // A state that has been tried leads where it led before.
+        const PieceState start = problem.lumped.state(next);
         // Where points between the nodes have laws, a node's state says little
         // of them, and moves by stretch are tried from each minimum.
         if (!tried.insert(start).second &&
@@ -216,15 +222,16 @@ namespace Debond
             return false;
           }
         // Starts go on from wherever they lead to, but not from a state that
-        // was tried, unless it is lower: nodes do not tell on which branches
+        // was tried, unless it is lower: nodes do not tell on which pieces
         // the quadrature points between them are.
-        const BranchState end      = problem.lumped.state(next);
-        const bool        is_new   = end == start || tried.insert(end).second;
-        const bool        is_start = kind == MoveKind::start;
-        const double known_best    = is_start ? result.functional : functional;
+        const PieceState end        = problem.lumped.state(next);
+        const bool       is_new     = end == start || tried.insert(end).second;
+        const bool       is_start   = kind == MoveKind::start;
+        const double     known_best = is_start ? result.functional : functional;
         if (minimum.functional >= known_best - rounding &&
             !(is_start && is_new))
           return false;
+        // Moves go on from here, whether or not it is the best so far.
         point      = next;
         functional = minimum.functional;
         if (functional < result.functional - rounding)
@@ -238,22 +245,28 @@ namespace Debond
 
       /// From @p next, which is in the state @p start and becomes the minimum.
       MajoriseMinimiseResult
-      minimise(const BranchState &start,
-               const bool         is_start,
-               Eigen::VectorXd   &next)
+      minimise(const PieceState &start,
+               const bool        is_start,
+               Eigen::VectorXd  &next)
       {
-        CondensedProblem trial = condensed(problem, next);
+        // Most trials end above the best minimum, and their way there is what
+        // takes the time: minimised roughly, with a guess of the active set for
+        // starts.
+        CondensedProblem trial(problem, next);
         trial.minimise_roughly();
         if (is_start)
           trial.guess_by(problem.guess);
-        std::vector<BranchState> way = {start};
-        std::size_t              end = ends.size();
-        MajoriseMinimiseResult   minimum =
+        std::vector<PieceState> way = {start};
+        std::size_t             end = ends.size();
+        MajoriseMinimiseResult  minimum =
           minimise_trial(problem.method, trial, [&](const auto &iteration) {
             if (problem.work != nullptr)
               problem.work->add(iteration.operations);
             if (states_are_majorants)
               {
+                // The state says what the majorant is, and so where the rest of
+                // the way leads: to where the trial came to that has been in
+                // it.
                 way.push_back(problem.lumped.state(next));
                 const auto known = end_of_way.find(way.back());
                 if (known != end_of_way.end())
@@ -271,11 +284,11 @@ namespace Debond
             next               = ends[end].s;
           }
         if (minimum.status == SolverStatus::success && states_are_majorants &&
-            end_of_way.size() * next.size() < most_branches_on_ways)
+            end_of_way.size() * next.size() < most_pieces_on_ways)
           {
             if (end == ends.size())
               ends.push_back({minimum.functional, next});
-            for (BranchState &state : way)
+            for (PieceState &state : way)
               end_of_way.emplace(std::move(state), end);
           }
         return minimum;
@@ -327,20 +340,18 @@ namespace Debond
 
 
     /// For one problem.
-    class GuidedSearch
+    struct GuidedSearch
     {
-    public:
-      GuidedSearch(const SearchProblem            &problem,
-                   const bool                      is_separable,
-                   const BranchAndBoundParameters &limits)
-        : problem(problem)
-        , is_separable(is_separable)
-        , limits(limits)
-      {}
+      const SearchProblem            &problem;
+      const bool                      is_separable;
+      const BranchAndBoundParameters &limits;
+      GuidedSearchResult              result = {};
 
       GuidedSearchResult
       run(Eigen::VectorXd &s)
       {
+        // The effort grows as long as there is no proof: nothing but a bound, a
+        // quick search, the whole search with branch and bound.
         const double       n        = double(s.size());
         const bool         is_small = n <= largest_first_look;
         const unsigned int n_nodes  = static_cast<unsigned int>(std::ceil(
@@ -359,6 +370,9 @@ namespace Debond
             (!is_looked_at && is_proved(s, 1)))
           return result;
         // What the proof finds is where moves have not been tried from.
+        // Search and proof help each other: a proof that finds a lower point
+        // gives the search a new start, and a lower minimum makes the proof's
+        // boxes smaller.
         for (unsigned int k = 0;
              k <= most_proofs && !problem.interruption.requested();
              ++k)
@@ -372,16 +386,12 @@ namespace Debond
         return result;
       }
 
-    private:
-      const SearchProblem            &problem;
-      const bool                      is_separable;
-      const BranchAndBoundParameters &limits;
-      GuidedSearchResult              result;
-
       /// Adds what it did to the result.
       void
       search(const BranchSearchParameters &moves, Eigen::VectorXd &s)
       {
+        // Counts are those of all searches, the functional that of the last,
+        // which is the lowest.
         const BranchSearchResult more = search_branches(problem, moves, s);
         BranchSearchResult      &sum  = result.search;
         sum.trials += more.trials;
@@ -400,20 +410,26 @@ namespace Debond
         if (!problem.lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters parameters;
-        parameters.tolerance             = limits.tolerance;
-        parameters.n_threads             = limits.n_threads;
-        parameters.maximum_nodes         = maximum_nodes;
-        const BranchAndBoundResult proof = branch_and_bound(
-          parameters,
-          {problem.S, problem.g, problem.lumped, problem.interruption},
-          s);
+        parameters.tolerance     = limits.tolerance;
+        parameters.n_threads     = limits.n_threads;
+        parameters.maximum_nodes = maximum_nodes;
+        const BranchAndBoundResult proof =
+          branch_and_bound(parameters,
+                           {problem.S,
+                            problem.g,
+                            problem.upper,
+                            problem.lumped,
+                            problem.interruption},
+                           s);
         if (is_separable)
           result.proof = proof;
         if (problem.work != nullptr)
           problem.work->add(operations_of_node * proof.nodes *
                             std::pow(double(s.size()), 3.));
-        Eigen::VectorXd  other         = proof.s;
-        CondensedProblem other_problem = condensed(problem, other);
+        // Where Phi is not separable the proof was for the lumped one, and its
+        // point is only a start for Phi itself.
+        Eigen::VectorXd  other = proof.s;
+        CondensedProblem other_problem(problem, other);
         if (!is_separable &&
             minimise_trial(problem.method, other_problem).status !=
               SolverStatus::success)
@@ -422,8 +438,9 @@ namespace Debond
             return false;
           }
         const MajorantProblem::State state = other_problem.evaluate();
-        if (state.functional < condensed(problem, s).evaluate().functional -
-                                 state.functional_rounding)
+        if (state.functional <
+            CondensedProblem(problem, s).evaluate().functional -
+              state.functional_rounding)
           s = other;
         return proof.status == ProofStatus::proved;
       }
@@ -432,18 +449,18 @@ namespace Debond
 
 
 
-  SeparableBranches
-  lumped_branches(const PiecewiseEnergy     &branches,
-                  const Eigen::VectorXd     &weights,
-                  const std::vector<double> &stretches)
+  SeparableEnergy
+  lumped_energy(const PiecewiseEnergy     &pieces,
+                const Eigen::VectorXd     &weights,
+                const std::vector<double> &stretches)
   {
     std::vector<PiecewiseEnergy> f;
     for (unsigned int i = 0; i < weights.size(); ++i)
       {
         const double stretch = stretches.empty() ? 1. : stretches[i];
-        f.push_back(branches.scaled(weights(i) * stretch * stretch, stretch));
+        f.push_back(pieces.scaled(weights(i) * stretch * stretch, stretch));
       }
-    return SeparableBranches(f);
+    return SeparableEnergy(f);
   }
 
 
@@ -454,6 +471,6 @@ namespace Debond
                 const BranchAndBoundParameters &limits,
                 Eigen::VectorXd                &s)
   {
-    return GuidedSearch(problem, is_separable, limits).run(s);
+    return GuidedSearch{problem, is_separable, limits}.run(s);
   }
 } // namespace Debond

@@ -81,11 +81,15 @@ namespace Debond
                     static_cast<double>(left.upper)};
         }
       // How much lower the line with slope m that touches left is at right.
+      // The line with slope m that touches both has the excess 0. For each arc
+      // the touching point moves with m, until it is at an end of the arc.
       const auto excess = [&](const long double m) {
         const long double p = left.contact(m), q = right.contact(m);
         return m * (q - p) - (right.f(q) - left.f(p));
       };
       // It grows with m, by a parabola between these slopes.
+      // Between the slopes at which a touching point comes to an end of its arc
+      // or leaves it.
       std::array<long double, 4> slopes = {{left.slope_at(left.lower),
                                             left.slope_at(left.upper),
                                             right.slope_at(right.lower),
@@ -121,7 +125,7 @@ namespace Debond
 
 
   double
-  BranchEnergy::value(const double s) const
+  ShiftedEnergy::value(const double s) const
   {
     unsigned int k = 0;
     while (k + 1 < pieces.size() && s < pieces[k].lower)
@@ -132,10 +136,10 @@ namespace Debond
 
 
   long double
-  BranchEnergy::least(const long double  r,
-                      const double       lower,
-                      const double       upper,
-                      const unsigned int piece) const
+  ShiftedEnergy::least(const long double  r,
+                       const double       lower,
+                       const double       upper,
+                       const unsigned int piece) const
   {
     using Limits = std::numeric_limits<long double>;
 
@@ -144,6 +148,7 @@ namespace Debond
     const long double right = std::min(upper, p.upper);
     if (left > right)
       return Limits::infinity();
+    // r s + f(s) on the piece is h + slope s + c/2 s^2.
     const long double c     = static_cast<long double>(convexity) + p.curvature;
     const long double slope = r + p.slope;
     // Of a concave piece one of the ends.
@@ -165,9 +170,9 @@ namespace Debond
 
 
   long double
-  BranchEnergy::least(const long double r,
-                      const double      lower,
-                      const double      upper) const
+  ShiftedEnergy::least(const long double r,
+                       const double      lower,
+                       const double      upper) const
   {
     long double result = std::numeric_limits<long double>::infinity();
     for (unsigned int k = 0; k < pieces.size(); ++k)
@@ -177,9 +182,9 @@ namespace Debond
 
 
 
-  ConvexEnvelope::ConvexEnvelope(const BranchEnergy &energy,
-                                 const double        lower,
-                                 const double        upper)
+  ConvexEnvelope::ConvexEnvelope(const ShiftedEnergy &energy,
+                                 const double         lower,
+                                 const double         upper)
     : f(energy)
   {
     // Convex pieces on the envelope, each with the line to it; of concave ones
@@ -190,6 +195,8 @@ namespace Debond
       const Piece *piece;
       double       line_from, begin;
     };
+    // As for the convex hull of points, from left to right: each arc that is
+    // added takes with it those that the line to it passes below.
     std::vector<Step> steps;
     const auto        add = [&](const Arc &arc, const Piece &piece) {
       Step step = {arc,
@@ -228,6 +235,8 @@ namespace Debond
           }
       }
 
+    // From the arcs that are left to parts: a line to each, and the arc as far
+    // as to where the next line leaves it.
     for (unsigned int k = 0; k < steps.size(); ++k)
       {
         const Step  &step = steps[k];
@@ -266,6 +275,7 @@ namespace Debond
   double
   ConvexEnvelope::value(const double s) const
   {
+    // Off the lines the envelope is f.
     const Part *const line = line_at(s);
     return line == nullptr ?
              f.value(s) :
@@ -283,16 +293,17 @@ namespace Debond
 
 
 
-  RoundedBranches::RoundedBranches(const PiecewiseEnergy &f, const double D)
+  RoundedEnergy::RoundedEnergy(const PiecewiseEnergy &f, const double D)
     : f(f)
   {
-    BranchEnergy energy = {D, {}};
+    // The envelope of f + D/2 s^2 differs from it on its lines alone.
+    ShiftedEnergy energy = {D, {}};
     for (unsigned int k = 0; k < f.size(); ++k)
       energy.pieces.push_back(f[k]);
     if (f.size() == 1)
       return;
     // Further down there are no lines: those of the last kink, at s, with a
-    // branch of curvature c before it end at s sqrt(1 + c / D).
+    // piece of curvature c before it end at s sqrt(1 + c / D).
     const double last_kink = f[f.size() - 1].upper;
     const double lowest = 4. * last_kink * std::sqrt(1. + f[0].curvature / D);
     for (const ConvexEnvelope::Part &part :
@@ -304,8 +315,10 @@ namespace Debond
 
 
   PiecewiseEnergy
-  RoundedBranches::minimum() const
+  RoundedEnergy::minimum() const
   {
+    // In place of each line the parabola with the curvature of f on its far
+    // side that meets f at both ends.
     std::vector<EnergyPiece> pieces;
     // From the end of what there is already down to @p end.
     const auto add =
@@ -333,7 +346,7 @@ namespace Debond
 
 
   bool
-  RoundedBranches::is_rounded_near(const double s) const
+  RoundedEnergy::is_rounded_near(const double s) const
   {
     for (const Line &line : lines)
       {
@@ -348,7 +361,7 @@ namespace Debond
 
 
   std::optional<unsigned int>
-  RoundedBranches::exact_piece(const Interval &interval) const
+  RoundedEnergy::exact_piece(const Interval &interval) const
   {
     for (const Line &line : lines)
       if (interval.upper > line.lower && interval.lower < line.upper)

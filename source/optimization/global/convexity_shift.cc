@@ -2,10 +2,10 @@
 #include <debond/base/tolerances.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/interval.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace Debond
@@ -29,9 +29,8 @@ namespace Debond
     DenseCholesky
     factorise_safely(Eigen::MatrixXd A)
     {
-      const double n = double(A.rows());
-      const double shift =
-        (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * n;
+      const double n     = double(A.rows());
+      const double shift = (n + 3.) * 2. * Tolerance::epsilon * n;
       A.diagonal() -= shift * A.diagonal().cwiseAbs();
       return DenseCholesky(std::move(A));
     }
@@ -72,7 +71,7 @@ namespace Debond
         v      = root.cwiseProduct(inverse_of_A * root.cwiseProduct(v));
         lambda = v.norm();
       }
-    return lambda > 0. ? 1. / lambda : std::numeric_limits<double>::infinity();
+    return lambda > 0. ? 1. / lambda : infinity;
   }
 
 
@@ -92,12 +91,15 @@ namespace Debond
 
     for (unsigned int k = 0; k < n; ++k)
       {
-        const unsigned int i    = which[k];
-        const double       best = v(i) > 0. ? 1. / P(k, k) - mu / v(i) : -D(i);
-        const double       step = step_share * std::max(best, -D(i));
+        const unsigned int i = which[k];
+        // The derivative v_i - mu (A - D)^{-1}_ii is zero there, as (A -
+        // D)^{-1}_ii changes with D_i alone like P_kk / (1 - step P_kk).
+        const double best = v(i) > 0. ? 1. / P(k, k) - mu / v(i) : -D(i);
+        const double step = step_share * std::max(best, -D(i));
         if (std::abs(step) * P(k, k) < Tolerance::shift_step)
           continue;
         D(i) += step;
+        // The inverse after the step, by the formula of Sherman and Morrison.
         const Eigen::VectorXd column = P.col(k);
         P.noalias() +=
           (step / (1. - step * P(k, k))) * column * column.transpose();

@@ -31,6 +31,8 @@ namespace Debond
                      const double          weight,
                      const double          z)
     {
+      // A minimum has z = s + e'(s) / weight, which grows with s: it is on the
+      // first part whose end has an image beyond z.
       for (unsigned int p = 0; p < e.parts.size(); ++p)
         {
           const ConvexEnvelope::Part &part  = e.parts[p];
@@ -54,6 +56,8 @@ namespace Debond
               const std::vector<ConvexEnvelope> &envelopes,
               Eigen::VectorXd                   &s)
     {
+      // With all places fixed the envelopes are parabolas or constants, and one
+      // linear system gives the point.
       std::vector<int> free;
       for (unsigned int i = 0; i < places.size(); ++i)
         if (places[i] == at_lower)
@@ -97,6 +101,8 @@ namespace Debond
     std::vector<int> places, old_places;
     for (unsigned int step = 0; step < maximum_newton_steps; ++step)
       {
+        // Where each unknown would go by itself tells its place; if no place
+        // changes the point is the minimum.
         const Eigen::VectorXd gradient = problem.A * s - problem.g;
         old_places.swap(places);
         places.resize(s.size());
@@ -125,6 +131,8 @@ namespace Debond
     long double           sum = 0., size = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
+        // A x in extended precision, and how large its terms are: what rounding
+        // may have done to it.
         long double product = 0., terms = std::abs(problem.g(i));
         for (unsigned int j = 0; j < n; ++j)
           {
@@ -133,16 +141,20 @@ namespace Debond
             product += term;
             terms += std::abs(term);
           }
-        const BranchEnergy &f = problem.f[i];
+        // The sum of r_i s_i + f_i(s_i) over all i is least where each term is:
+        // they are independent of each other.
+        const ShiftedEnergy &f = problem.f[i];
         // As s_i <= 0, the largest r_i that it can be gives a bound.
         r[i]     = product - problem.g(i) + (n + 16.L) * epsilon * terms;
         least[i] = f.least(r[i], problem.lower(i), problem.upper(i));
         sum += least[i] - 0.5L * x(i) * product;
         size += std::abs(x(i)) * terms + std::abs(least[i]);
       }
+    // From what rounding could have made of the sum to what is below it for
+    // sure, and the same for the result as a double.
     sum -= (n + 16.L) * epsilon * size;
     value = static_cast<double>(sum);
-    value -= std::numeric_limits<double>::epsilon() * std::abs(value);
+    value -= Tolerance::epsilon * std::abs(value);
   }
 
 
@@ -155,6 +167,7 @@ namespace Debond
     const PiecewiseEnergy::Piece &p = problem.f[i].pieces[piece];
     const double                  quadratic =
       1. / ((1. + Tolerance::outwards) * inverse_diagonal);
+    // 1/2 (s - x)'A (s - x) with all components but s_i where it is least.
     const double c        = problem.f[i].convexity + p.curvature;
     const double r_i      = static_cast<double>(r[i]);
     const double least_i  = static_cast<double>(least[i]);
@@ -168,7 +181,7 @@ namespace Debond
       is_bounded ? std::min(largest(i), std::abs(p.lower)) : largest(i) + size;
     const double offset = is_bounded ? 0.5 * quadratic * size * size : 0.;
     const double rounding =
-      8. * std::numeric_limits<double>::epsilon() *
+      8. * Tolerance::epsilon *
       (std::abs(value) + std::abs(least_i) + std::abs(constant) + offset +
        (std::abs(r_i) + std::abs(p.slope) +
         (is_bounded ? quadratic * size : 0.) + (std::abs(c) + quadratic) * s) *

@@ -41,6 +41,8 @@ namespace Debond
       std::vector<NodeSet> parts;
       while (!nodes.empty())
         {
+          // A front of neighbours spreads over the part until there are none
+          // left.
           NodeSet part, front = {*nodes.begin()};
           while (!front.empty())
             {
@@ -68,6 +70,7 @@ namespace Debond
             if (std::includes(
                   nodes.begin(), nodes.end(), graph[i].begin(), graph[i].end()))
               inner.insert(i);
+          // The last layer, or a set without a rim, such as a closed ring.
           if (inner.empty() || inner.size() == nodes.size())
             return {*std::next(nodes.begin(), nodes.size() / 2)};
           nodes = inner;
@@ -113,16 +116,18 @@ namespace Debond
 
 
 
-  std::vector<BranchMove>
-  moves_from(const BranchState    &state,
+  std::vector<PieceMove>
+  moves_from(const PieceState     &state,
              const NeighbourGraph &graph,
              const unsigned int    n_pieces,
              const unsigned int    maximum_shift,
              const bool            flips)
   {
-    std::vector<BranchMove> moves;
+    std::vector<PieceMove> moves;
     for (unsigned int piece = 1; piece < n_pieces; ++piece)
       {
+        // For this kink: on its far side, where bonds are on the piece or
+        // beyond, and on the side of 0.
         NodeSet below, above;
         for (unsigned int i = 0; i < state.size(); ++i)
           (state[i] >= piece ? below : above).insert(i);
@@ -133,6 +138,8 @@ namespace Debond
           for (const NodeSet &edge :
                connected_parts(neighbours_of(patch, graph), graph))
             {
+              // The edge of the patch from outside, and from inside: layers of
+              // nodes that join it, and that leave it.
               const NodeSet inner = common(neighbours_of(edge, graph), patch);
               for (const NodeSet &nodes :
                    layers(edge, above, maximum_shift, graph))
@@ -157,21 +164,24 @@ namespace Debond
 
 
 
-  BranchMove
-  beyond(const BranchMove     &move,
-         const BranchState    &state,
+  PieceMove
+  beyond(const PieceMove      &move,
+         const PieceState     &state,
          const NeighbourGraph &graph,
          const unsigned int    n)
   {
+    // A move of an edge takes nodes one way only.
     const bool     is_down = !move.down.empty();
     const NodeSet &nodes   = is_down ? move.down : move.up;
     NodeSet        others;
     for (unsigned int i = 0; i < state.size(); ++i)
       if ((state[i] < move.piece) == is_down)
         others.insert(others.end(), i);
+    // Layers that begin beside the last ones that moved, as the edge has come
+    // to them.
     const std::vector<NodeSet> next =
       layers(common(neighbours_of(nodes, graph), others), others, n, graph);
-    BranchMove result = {move.piece, {}, {}};
+    PieceMove result = {move.piece, {}, {}};
     if (!next.empty())
       (is_down ? result.down : result.up) = next.back();
     return result;
@@ -179,11 +189,13 @@ namespace Debond
 
 
 
-  std::vector<BranchMove>
-  moves_by_stretch(const BranchState &state,
+  std::vector<PieceMove>
+  moves_by_stretch(const PieceState  &state,
                    const VectorView  &s,
                    const unsigned int n_pieces)
   {
+    // Most stretched first, with ties in the order of the nodes, so that the
+    // moves are the same everywhere.
     std::vector<unsigned int> by_stretch(state.size());
     std::iota(by_stretch.begin(), by_stretch.end(), 0);
     std::stable_sort(by_stretch.begin(),
@@ -191,7 +203,7 @@ namespace Debond
                      [&](const unsigned int i, const unsigned int j) {
                        return s(i) < s(j);
                      });
-    std::vector<BranchMove> moves;
+    std::vector<PieceMove> moves;
     for (unsigned int piece = 1; piece < n_pieces; ++piece)
       {
         std::vector<unsigned int> below, above;
@@ -199,6 +211,7 @@ namespace Debond
           (state[i] >= piece ? below : above).push_back(i);
         const NodeSet lower(below.begin(), below.end());
         const NodeSet upper(above.begin(), above.end());
+        // Of those below the least stretched first.
         std::reverse(below.begin(), below.end());
         for (const NodeSet &nodes : growing(below, upper))
           moves.push_back({piece, {}, nodes});

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -45,6 +44,8 @@ namespace Debond
                   const unsigned int     i,
                   const PiecewiseEnergy &f)
     {
+      // A piece that the box has only an end of is no part: at the kink the
+      // piece on the side of 0 holds.
       const unsigned int last  = f.index(node.lower(i));
       unsigned int       first = 0;
       while (first < last && node.upper(i) <= f[first].lower)
@@ -58,10 +59,10 @@ namespace Debond
     class Relaxations
     {
     public:
-      Relaxations(const Eigen::MatrixXd   &S,
-                  const Eigen::VectorXd   &g,
-                  const SeparableBranches &phi,
-                  ProofNode               &node)
+      Relaxations(const Eigen::MatrixXd &S,
+                  const Eigen::VectorXd &g,
+                  const SeparableEnergy &phi,
+                  ProofNode             &node)
         : S(S)
         , phi(phi)
         , n(static_cast<unsigned int>(g.size()))
@@ -80,6 +81,8 @@ namespace Debond
           {
             if (Interruption::noticed() || !set_up(round == 0))
               break;
+            // With every unknown on one convex piece the relaxation is the
+            // problem itself.
             const bool all_decided = undecided().empty();
             minimise_relaxation(problem, envelopes, node.x);
             const LowerBound lower_bound(problem, node.x);
@@ -88,11 +91,16 @@ namespace Debond
             if (node.bound >= best_value - tolerance || all_decided)
               break;
 
+            // The bound grows with the distance from x. Where it is above the
+            // best value nothing needs to be looked for; if that is everywhere,
+            // the node is done.
             if (!shrink(lower_bound, best_value))
               {
                 result.least = best_value;
                 return result;
               }
+            // The convexity that the relaxation was made with is where the next
+            // one starts, and where those of the halves do.
             if (round > 0 || node.shift.isZero(0.))
               {
                 for (unsigned int i = 0; i < n; ++i)
@@ -100,6 +108,7 @@ namespace Debond
                 if (round > 0)
                   raise(best_value - lower_bound.value);
               }
+            // More rounds gain less than two halves do.
             if (round + 1 >= maximum_rounds)
               choose(lower_bound, result);
             if (result.unknown)
@@ -112,6 +121,7 @@ namespace Debond
       std::optional<NodeBall>
       ball(const bool is_first)
       {
+        // The same relaxation as in run(), minimised once.
         if (!set_up(is_first))
           return {};
         minimise_relaxation(problem, envelopes, node.x);
@@ -119,10 +129,10 @@ namespace Debond
       }
 
     private:
-      const Eigen::MatrixXd   &S;
-      const SeparableBranches &phi;
-      const unsigned int       n;
-      ProofNode               &node;
+      const Eigen::MatrixXd &S;
+      const SeparableEnergy &phi;
+      const unsigned int     n;
+      ProofNode             &node;
 
       BoxProblem                  problem;
       std::vector<ConvexEnvelope> envelopes;
@@ -147,6 +157,9 @@ namespace Debond
       bool
       set_up(const bool is_first)
       {
+        // q(s) = 1/2 s'A s - g's + sum f_i(s_i) again, with some convexity
+        // moved from the diagonal of A to f_i: the sum is the same, its convex
+        // envelope is larger.
         problem.A     = S;
         problem.lower = node.lower;
         problem.upper = node.upper;
@@ -155,9 +168,9 @@ namespace Debond
         Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
         for (unsigned int i = 0; i < n; ++i)
           {
-            const Pieces  pieces = pieces_in_box(node, i, phi.f[i]);
-            BranchEnergy &f      = problem.f[i];
-            f                    = {0., {}};
+            const Pieces   pieces = pieces_in_box(node, i, phi.f[i]);
+            ShiftedEnergy &f      = problem.f[i];
+            f                     = {0., {}};
             double least = phi.f[i][pieces.first].curvature, largest = least;
             for (unsigned int k = pieces.first; k <= pieces.last; ++k)
               {
@@ -165,6 +178,9 @@ namespace Debond
                 least   = std::min(least, f.pieces.back().curvature);
                 largest = std::max(largest, f.pieces.back().curvature);
               }
+            // Undecided: the spread of the curvatures says how much convexity
+            // could make the term convex. Decided unknowns have theirs in A,
+            // where it can be moved to others.
             if (pieces.first < pieces.last || least < 0.)
               {
                 shift(i)   = node.shift(i);
@@ -173,8 +189,8 @@ namespace Debond
             else if (double &curvature = f.pieces[0].curvature; curvature > 0.)
               {
                 // Rounded down, A gives a bound all the same.
-                problem.A(i, i) = (problem.A(i, i) + curvature) *
-                                  (1. - std::numeric_limits<double>::epsilon());
+                problem.A(i, i) =
+                  (problem.A(i, i) + curvature) * (1. - Tolerance::epsilon);
                 curvature = 0.;
               }
           }
@@ -184,9 +200,12 @@ namespace Debond
             const auto inverse_of_A = safe_inverse(problem.A);
             if (!inverse_of_A)
               return false;
+            // The same part of all that A can spare, in proportion to the need.
             shift =
               first_share * largest_multiple(*inverse_of_A, weights) * weights;
           }
+        // A less the shift has to stay positive definite beyond doubt.
+        // Factorisations decide; what is refused is tried with less.
         while (true)
           {
             Eigen::MatrixXd rest = problem.A;
@@ -200,10 +219,11 @@ namespace Debond
             if (shift.isZero(0.))
               return false;
             shift *= retreat;
-            if (shift.maxCoeff() <
-                std::numeric_limits<double>::epsilon() * S.trace())
+            if (shift.maxCoeff() < Tolerance::epsilon * S.trace())
               shift.setZero();
           }
+        // The convexity that a term has is what A has lost to the last digit,
+        // so that the sum is the functional itself.
         envelopes.clear();
         for (unsigned int i = 0; i < n; ++i)
           {
@@ -222,6 +242,8 @@ namespace Debond
       {
         for (unsigned int i = 0; i < n; ++i)
           {
+            // The hull of what the pieces leave: a hole inside would be lost,
+            // which gives a larger box and no wrong one.
             Interval left = {1., -1.};
             for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
               left = hull(left,
@@ -240,6 +262,7 @@ namespace Debond
       void
       raise(const double left)
       {
+        // The derivative of the bound by the convexity of each term.
         Eigen::VectorXd v(n);
         for (unsigned int i = 0; i < n; ++i)
           v(i) = 0.5 * envelopes[i].spread(node.x(i));
@@ -249,12 +272,15 @@ namespace Debond
       void
       choose(const LowerBound &lower_bound, NodeResult &result) const
       {
-        double highest = -std::numeric_limits<double>::infinity();
+        // The unknown whose halves both have high bounds, of the lower one
+        // first, and whose envelope is far below its term: splitting there
+        // raises the bound of the node most.
+        double highest = -infinity;
         for (const unsigned int i : undecided())
           {
             const double          split = place_to_split(i);
             std::array<double, 2> halves;
-            halves.fill(std::numeric_limits<double>::infinity());
+            halves.fill(infinity);
             for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
               for (const unsigned int half : {0, 1})
                 halves[half] =
@@ -285,9 +311,9 @@ namespace Debond
       double
       place_to_split(const unsigned int i) const
       {
-        const double x       = node.x(i);
-        const double nowhere = std::numeric_limits<double>::infinity();
-        double       split   = nowhere;
+        const double                x       = node.x(i);
+        const double                nowhere = infinity;
+        double                      split   = nowhere;
         const ConvexEnvelope::Part *longest = nullptr;
         for (const ConvexEnvelope::Part &part : envelopes[i].parts)
           if (part.is_line)
@@ -322,6 +348,9 @@ namespace Debond
   std::optional<ProofNode>
   NodeBound::root(const double best_value) const
   {
+    // Without Phi, which is not negative, the functional is a parabola with its
+    // minimum at s_0. Points with at most the best value are in an ellipsoid
+    // about s_0, and the box is around that.
     const auto inverse = safe_inverse(S);
     if (!inverse)
       return {};
@@ -331,15 +360,15 @@ namespace Debond
     const PiecewiseEnergy zero        = PiecewiseEnergy::zero();
     BoxProblem            without_phi = {S,
                                          g,
-                                         std::vector<BranchEnergy>(n, {0., {zero[0]}}),
+                                         std::vector<ShiftedEnergy>(n, {0., {zero[0]}}),
                                          Eigen::VectorXd(),
-                                         Eigen::VectorXd::Zero(n)};
+                                         upper};
     // Within this distance of s_0 by the energy, and a little more.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
     without_phi.lower =
       (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
                (1. + Tolerance::outwards))
-        .cwiseMin(0.);
+        .cwiseMin(upper);
     without_phi.lower -= Tolerance::outwards * without_phi.lower.cwiseAbs();
 
     ProofNode node;
@@ -359,10 +388,10 @@ namespace Debond
   double
   NodeBound::bound_at(const Eigen::VectorXd &s) const
   {
-    constexpr double nothing = -std::numeric_limits<double>::infinity();
+    constexpr double nothing = -infinity;
     // With this convexity r_i s_i + f_i(s_i) is least where it is stationary.
-    Eigen::MatrixXd           A = S;
-    std::vector<BranchEnergy> f(n);
+    Eigen::MatrixXd            A = S;
+    std::vector<ShiftedEnergy> f(n);
     for (unsigned int i = 0; i < n; ++i)
       {
         const PiecewiseEnergy &f_i       = phi.f[i];
@@ -373,6 +402,8 @@ namespace Debond
             f[i].pieces.push_back(f_i[k]);
             largest = std::max(largest, f_i[k].curvature);
           }
+        // A little more than is needed, so that the minimum of the term is
+        // isolated, and rounding finds no lower one elsewhere.
         A(i, i) -= (1. + Tolerance::excess_at_point) * convexity +
                    Tolerance::floor_at_point * std::min(largest, S(i, i));
         // What was taken, without the rounding of the difference.
@@ -382,11 +413,7 @@ namespace Debond
       }
     if (!is_safely_positive_definite(A))
       return nothing;
-    return LowerBound({A,
-                       g,
-                       f,
-                       Eigen::VectorXd::Constant(n, nothing),
-                       Eigen::VectorXd::Zero(n)},
+    return LowerBound({A, g, f, Eigen::VectorXd::Constant(n, nothing), upper},
                       s)
       .value;
   }

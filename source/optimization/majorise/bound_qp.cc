@@ -13,13 +13,9 @@ namespace Debond
 {
   namespace
   {
-    /// Updates of all indices at once before the finite rule takes over. The
-    /// benchmark needs at most 12 up to its mesh 640x64.
-    constexpr unsigned int maximum_joint_updates = 50;
-
-    /// Exchanges in a row that leave no fewer wrong indices, after which
-    /// solve_bound_qp() goes downhill.
-    constexpr unsigned int maximum_idle_exchanges = 10;
+    /// Updates in a row that leave no fewer wrong indices. Those of bodies that
+    /// are not slender need hardly more in all.
+    constexpr unsigned int maximum_idle_updates = 10;
 
     /// If that many updates have not found the active set, it may be for
     /// rounding in the solutions: on slender bodies small errors of forces have
@@ -49,6 +45,8 @@ namespace Debond
              const Eigen::VectorXd                   &x)
     {
       Eigen::Matrix<long double, Eigen::Dynamic, 1> sum = r.cast<long double>();
+      // By columns, as M is stored, and without those that bounds have made
+      // zero.
       for (Eigen::Index j = 0; j < x.size(); ++j)
         if (x(j) != 0.)
           for (Eigen::Index i = 0; i < r.size(); ++i)
@@ -76,6 +74,8 @@ namespace Debond
       for (unsigned int l = 0; l < free.size(); ++l)
         for (unsigned int k = l; k < free.size(); ++k)
           M_free(k, l) = M(free[k], free[l]);
+      // Where M_ff is not positive definite there is no minimum on these
+      // components, and what the caller believes of M is wrong.
       const DenseCholesky factor(std::move(M_free));
       if (!factor.is_positive_definite())
         throw NotPositiveDefinite();
@@ -88,6 +88,8 @@ namespace Debond
         for (unsigned int k = 0; k < free.size(); ++k)
           x(free[k]) += x_free(k);
       };
+      // The first solution, and then what it leaves of the residual: for active
+      // components at zero, as most are, r is the residual.
       correct(x.isZero(0.) ? r : Eigen::VectorXd(r - M * x));
       const double n_free     = static_cast<double>(free.size());
       double       operations = n_free * n_free * n_free / 3.;
@@ -97,8 +99,7 @@ namespace Debond
           correct(residual(M, r, x));
           operations += extended_operation * n_free * double(r.size());
           if (x_free.lpNorm<Eigen::Infinity>() <=
-              std::numeric_limits<double>::epsilon() *
-                x.lpNorm<Eigen::Infinity>())
+              Tolerance::epsilon * x.lpNorm<Eigen::Infinity>())
             break;
         }
       return operations;
@@ -106,22 +107,16 @@ namespace Debond
 
 
 
-    /// One problem.
-    class BoundQP
+    /// One problem, and its result as it comes about.
+    struct BoundQP
     {
-    public:
-      BoundQP(const Eigen::Ref<const Eigen::MatrixXd> &M,
-              const Eigen::VectorXd                   &r,
-              const Eigen::VectorXd                   &b,
-              ActiveSet                               &active,
-              const double                             tolerance)
-        : M(M)
-        , r(r)
-        , b(b)
-        , active(active)
-        , tolerance(tolerance)
-        , n(static_cast<unsigned int>(r.size()))
-      {}
+      const Eigen::Ref<const Eigen::MatrixXd> &M;
+      const Eigen::VectorXd                   &r;
+      const Eigen::VectorXd                   &b;
+      ActiveSet                               &active;
+      const double                             tolerance;
+      const unsigned int n      = static_cast<unsigned int>(r.size());
+      BoundQPResult      result = {};
 
       BoundQPResult
       run()
@@ -136,13 +131,13 @@ namespace Debond
           {
             result.status = SolverStatus::quadratic_program;
           }
+        // A result that is whole counts, whenever the signal came.
         if (!can_be_verified(result.status) && Interruption::noticed())
           result.status = SolverStatus::interrupted;
         result.x = result.x.cwiseMin(b);
         return result;
       }
 
-    private:
       /// The minimum with the given components free, the others at b.
       Eigen::VectorXd
       minimum_on(const std::vector<unsigned int> &free)
@@ -153,6 +148,8 @@ namespace Debond
           x(i) = 0.;
         result.operations += solve_on(free, M, r, refined, x) +
                              operations_per_entry * double(n) * double(n);
+        // The multipliers of active bounds, mu = r - M x >= 0 at the minimum;
+        // on free components the same is rounding.
         result.mu = refined ? residual(M, r, x) : r - M * x;
         for (const unsigned int i : free)
           result.mu(i) = 0.;
@@ -169,6 +166,8 @@ namespace Debond
       double
       force_noise(const Eigen::VectorXd &x) const
       {
+        // The terms of M x can be far larger than their sum; what rounding
+        // leaves of them is no force, and would let bounds change for ever.
         Eigen::VectorXd terms = Eigen::VectorXd::Zero(n);
         for (unsigned int j = 0; j < n; ++j)
           if (x(j) != 0.)
@@ -195,6 +194,8 @@ namespace Debond
       bool
       is_near(const Eigen::VectorXd &x) const
       {
+        // Free components need no force, those at their bounds one that
+        // presses.
         const Eigen::VectorXd projected = x.cwiseMin(b);
         const Eigen::VectorXd force     = r - M * projected;
         return (projected.array() < b.array())
@@ -207,35 +208,20 @@ namespace Debond
       bool
       exchange()
       {
-        unsigned int fewest = n + 1, idle = 0;
-        while (is_within_limits())
+        ActiveSetRule rule;
+        while (is_within_limits() && !rule.wanders())
           {
-            std::vector<unsigned int> free, wrong;
+            std::vector<unsigned int> free;
             for (unsigned int i = 0; i < n; ++i)
               if (active[i] == 0)
                 free.push_back(i);
-            result.x                  = minimum_on(free);
-            const double mu_noise     = force_noise(result.x);
-            const double excess_noise = noise(result.x);
-            for (unsigned int i = 0; i < n; ++i)
-              if (active[i] != 0 ? result.mu(i) < -mu_noise :
-                                   result.x(i) - b(i) > excess_noise)
-                wrong.push_back(i);
-            if (wrong.empty())
-              {
-                end(SolverStatus::success);
-                return true;
-              }
-            if (wrong.size() < fewest)
-              {
-                fewest = static_cast<unsigned int>(wrong.size());
-                idle   = 0;
-              }
-            else if (++idle > maximum_idle_exchanges)
-              return false;
-            for (const unsigned int i : wrong)
-              active[i] = active[i] == 0;
-            if (tolerance > 0. && is_near(result.x))
+            result.x = minimum_on(free);
+            if (rule.update(result.x - b,
+                            result.mu,
+                            noise(result.x),
+                            force_noise(result.x),
+                            active) == 0 ||
+                (tolerance > 0. && !rule.wanders() && is_near(result.x)))
               {
                 end(SolverStatus::success);
                 return true;
@@ -248,6 +234,9 @@ namespace Debond
       void
       descend()
       {
+        // Bertsekas: a bound is kept active where the force presses on it, and
+        // the Newton step for the others is followed along its projection onto
+        // x <= b, as far as the functional falls. So it cannot wander.
         Eigen::VectorXd x = result.x.cwiseMin(b);
         while (is_within_limits())
           {
@@ -260,6 +249,8 @@ namespace Debond
                 if (active[i] == 0)
                   free.push_back(i);
               }
+            // If the whole step stays within the bounds and the kept
+            // multipliers press, it leads to the minimum.
             result.x = minimum_on(free);
             if (((result.x - b).array() <= noise(result.x)).all() &&
                 result.mu.minCoeff() >= -force_noise(result.x))
@@ -269,6 +260,8 @@ namespace Debond
               }
             if (!step(result.x - x, force, x))
               {
+                // Rounding hides the descent: the best that there is in
+                // doubles.
                 result.x = x;
                 end(SolverStatus::stagnated);
                 return;
@@ -286,7 +279,10 @@ namespace Debond
         for (unsigned int k = 0; k < maximum_halvings_of_step; ++k)
           {
             const Eigen::VectorXd change = (x + direction).cwiseMin(b) - x;
-            const double          slope  = force.dot(change);
+            // The functional changes by 1/2 c'M c - f'c along a change c. Some
+            // part of the first-order descent f'c has to be left, else steps
+            // could shrink for ever.
+            const double slope = force.dot(change);
             if (slope > 0. && 0.5 * change.dot(M * change) <=
                                 (1. - Tolerance::least_descent) * slope)
               {
@@ -297,14 +293,6 @@ namespace Debond
           }
         return false;
       }
-
-      const Eigen::Ref<const Eigen::MatrixXd> &M;
-      const Eigen::VectorXd                   &r;
-      const Eigen::VectorXd                   &b;
-      ActiveSet                               &active;
-      const double                             tolerance;
-      const unsigned int                       n;
-      BoundQPResult                            result;
     };
   } // namespace
 
@@ -317,20 +305,30 @@ namespace Debond
                         const double           mu_noise,
                         ActiveSet             &active)
   {
-    const bool only_first = n_updates++ >= maximum_joint_updates;
-    unsigned   changes    = 0;
+    std::vector<unsigned int> wrong;
     for (unsigned int i = 0; i < active.size(); ++i)
+      if (active[i] != 0 ? mu(i) < -mu_noise : excess(i) > excess_noise)
+        wrong.push_back(i);
+    if (wrong.size() < fewest)
       {
-        const bool wrong =
-          active[i] != 0 ? mu(i) < -mu_noise : excess(i) > excess_noise;
-        if (!wrong)
-          continue;
-        active[i] = active[i] == 0;
-        ++changes;
-        if (only_first)
-          break;
+        fewest = wrong.size();
+        idle   = 0;
       }
-    return changes;
+    else
+      ++idle;
+    // All at once is fast but may return to a set that was there before; the
+    // first alone never does.
+    for (std::size_t k = 0; k < (wanders() ? 1 : wrong.size()); ++k)
+      active[wrong[k]] = active[wrong[k]] == 0;
+    return static_cast<unsigned int>(wrong.size());
+  }
+
+
+
+  bool
+  ActiveSetRule::wanders() const
+  {
+    return idle > maximum_idle_updates;
   }
 
 
@@ -342,6 +340,6 @@ namespace Debond
                  ActiveSet                               &active,
                  const double                             tolerance)
   {
-    return BoundQP(M, r, b, active, tolerance).run();
+    return BoundQP{M, r, b, active, tolerance}.run();
   }
 } // namespace Debond

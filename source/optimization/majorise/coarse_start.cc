@@ -6,10 +6,26 @@
 
 namespace Debond
 {
+  Eigen::VectorXd
+  coarse_bounds(const Eigen::SparseMatrix<double> &P,
+                const Eigen::VectorXd             &upper)
+  {
+    Eigen::VectorXd result = Eigen::VectorXd::Constant(P.cols(), infinity);
+    for (Eigen::Index k = 0; k < P.cols(); ++k)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(P, k); entry;
+           ++entry)
+        result(k) = std::min(result(k), upper(entry.row()));
+    return result;
+  }
+
+
+
   ActiveSetGuess::ActiveSetGuess(
     const MatrixView                               &S,
     const std::vector<Eigen::SparseMatrix<double>> &prolongations)
   {
+    // The matrices P'S P of all subspaces are made once, as S is that of all
+    // majorants to come.
     for (const Eigen::SparseMatrix<double> &P : prolongations)
       {
         Eigen::MatrixXd S_P;
@@ -27,8 +43,11 @@ namespace Debond
   ActiveSetGuess::active_set(const unsigned int                 level,
                              const Eigen::MatrixXd             &M,
                              const Eigen::SparseMatrix<double> &E,
-                             const Eigen::VectorXd             &r) const
+                             const Eigen::VectorXd             &r,
+                             const Eigen::VectorXd             &upper) const
   {
+    // On the coarsest space all bounds start inactive: with few unknowns any
+    // start will do.
     ActiveSet active(r.size(), 0);
     if (level == levels.size())
       return active;
@@ -39,18 +58,18 @@ namespace Debond
     const Eigen::VectorXd coarse_r = P.transpose() * r;
     Eigen::MatrixXd       coarse_M = levels[level].S;
     coarse_M += coarse_E;
-    ActiveSet coarse_active =
-      active_set(level + 1, coarse_M, coarse_E, coarse_r);
+    const Eigen::VectorXd coarse_upper = coarse_bounds(P, upper);
+    ActiveSet             coarse_active =
+      active_set(level + 1, coarse_M, coarse_E, coarse_r, coarse_upper);
     Eigen::VectorXd x =
-      P * solve_bound_qp(coarse_M,
-                         coarse_r,
-                         Eigen::VectorXd::Zero(coarse_r.size()),
-                         coarse_active)
-            .x;
+      P * solve_bound_qp(coarse_M, coarse_r, coarse_upper, coarse_active).x;
     for (Eigen::Index i = 0; i < x.size(); ++i)
       {
-        x(i)      = std::min(x(i) + (r(i) - M.col(i).dot(x)) / M(i, i), 0.);
-        active[i] = x(i) == 0.;
+        // The projected Gauss-Seidel sweep. What the coarse point has inside
+        // the contact zone is at its bounds already; the sweep puts right the
+        // rim, which coarse functions blur.
+        x(i) = std::min(x(i) + (r(i) - M.col(i).dot(x)) / M(i, i), upper(i));
+        active[i] = x(i) == upper(i);
       }
     return active;
   }
@@ -68,17 +87,20 @@ namespace Debond
       return Eigen::VectorXd::Zero(problem.g.size());
 
     const Eigen::SparseMatrix<double> &P = prolongations.front();
+    // Symmetric to the last digit, as factorisations read one triangle and
+    // products both.
     const Eigen::MatrixXd    product = P.transpose() * (problem.S * P).eval();
     const Eigen::MatrixXd    S       = 0.5 * (product + product.transpose());
     const Eigen::VectorXd    g       = P.transpose() * problem.g;
     const RestrictedFunction phi(problem.phi, P);
-    const PiecewiseProblem   coarse = {S, g, phi, problem.interruption};
+    const PiecewiseProblem   coarse = {
+        S, g, coarse_bounds(P, problem.upper), phi, problem.interruption};
 
     const std::vector<Eigen::SparseMatrix<double>> coarser(
       prolongations.begin() + 1, prolongations.end());
     Eigen::VectorXd s =
       coarse_start(coarse, coarser, method, failures, on_coarsest);
-    CondensedProblem             condensed(S, g, phi, s);
+    CondensedProblem             condensed(coarse, s);
     const MajoriseMinimiseResult result =
       method.minimize(condensed, [&](const auto &) {
         return !problem.interruption.requested();

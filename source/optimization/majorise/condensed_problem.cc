@@ -34,6 +34,7 @@ namespace Debond
       if (motions.cols() == 0)
         return {};
       // Translations and rotations differ by a length.
+      // Their units differ, which is a matter of scale for QR.
       const Eigen::MatrixXd columns = motions.colwise().normalized();
       return Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
              Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
@@ -56,28 +57,30 @@ namespace Debond
 
 
 
-  CondensedProblem::CondensedProblem(const MatrixView         &matrix,
-                                     const VectorView         &load,
-                                     const PiecewiseQuadratic &nonsmooth,
-                                     Eigen::VectorXd          &start,
-                                     const Eigen::MatrixXd    &free_motions,
-                                     const double              stiffness)
+  CondensedProblem::CondensedProblem(const PiecewiseProblem &problem,
+                                     Eigen::VectorXd        &start,
+                                     const Eigen::MatrixXd  &free_motions,
+                                     const double            stiffness)
     : N(orthonormal(free_motions))
-    , S_of_loose(without_motions(matrix, N))
-    , S(N.cols() > 0 ? MatrixView(S_of_loose) : matrix)
+    , S_of_loose(without_motions(problem.S, N))
+    , S(N.cols() > 0 ? MatrixView(S_of_loose) : problem.S)
     , stiffness(stiffness)
-    , g(load)
-    , phi(nonsmooth)
+    , g(problem.g)
+    , upper(problem.upper)
+    , phi(problem.phi)
     , s(start)
     , active(start.size())
   {
+    // Where all bonds hold they hold the rigid motions by this much. What is
+    // left of it by rounding is nothing, however soft the bonds are beside the
+    // body.
     if (N.cols() > 0)
       loose_stiffness =
         Tolerance::loose_motion *
         (N.transpose() * (phi.curvature(Eigen::VectorXd::Zero(s.size())) * N))
           .norm();
     for (unsigned int i = 0; i < s.size(); ++i)
-      active[i] = s(i) == 0.;
+      active[i] = s(i) == upper(i);
   }
 
 
@@ -92,8 +95,10 @@ namespace Debond
     double       energy = 0., work = 0.;
     double       largest_force = 0., violation = 0.;
     double       largest_terms = 0., energy_terms = 0.;
-    const double adhesion = phi.change(s);
+    const double change = phi.change(s);
 
+    // From the original data, not from M and r: what a majorant's factor has
+    // lost would not be seen in these.
     // The terms of a row of S s nearly cancel. Summed up column by column, for
     // which processors have instructions that sums row by row must not use.
     Eigen::VectorXd S_s   = Eigen::VectorXd::Zero(s.size());
@@ -106,25 +111,29 @@ namespace Debond
         }
     for (unsigned int i = 0; i < s.size(); ++i)
       {
+        // What rounding leaves of the forces and of the energy goes with the
+        // size of their terms.
         largest_terms = std::max(largest_terms, terms(i));
         energy_terms += std::abs(s(i)) * terms(i);
 
         energy += 0.5 * s(i) * S_s(i);
         work += g(i) * s(i);
-        // S s + xi - g + mu = 0,  mu >= 0,  s <= 0,  mu's = 0.
+        // S s + xi - g + mu = 0,  mu >= 0,  s <= b,  mu'(s - b) = 0, b being
+        // the upper bounds.
         const double mu = g(i) - S_s(i) - xi(i);
-        violation       = std::max(violation, s(i) < 0. ? std::abs(mu) : -mu);
-        largest_force   = std::max(
+        violation = std::max(violation, s(i) < upper(i) ? std::abs(mu) : -mu);
+        largest_force = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
-        state.n_active += s(i) == 0.;
+        state.n_active += s(i) == upper(i);
         // A maximum would lose it.
         if (std::isnan(mu))
           violation = largest_force = mu;
       }
-    state.functional         = energy - work + adhesion;
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    state.functional = energy - work + change;
     state.functional_rounding =
-      epsilon * (16. * (energy + std::abs(work) + adhesion) + energy_terms);
+      Tolerance::epsilon *
+      (16. * (energy + std::abs(work) + change) + energy_terms);
+    // Without any force there is nothing to be relative to, and nothing wrong.
     state.residual = largest_force == 0. ? 0. : violation / largest_force;
     state.residual_rounding =
       largest_force == 0. ?
@@ -138,28 +147,16 @@ namespace Debond
   bool
   CondensedProblem::majorise()
   {
-    // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const Eigen::SparseMatrix<double> previous_E = E;
-    const Eigen::VectorXd             previous_r = r;
-    E                                            = phi.curvature(s);
-    const Eigen::VectorXd E_s                    = E * s;
-    r                                            = g - phi.subgradient(s) + E_s;
-    if (previous_r.size() == r.size() && majorised)
+    // S + E is made anew only if E changes: with many contact nodes that is a
+    // part of the time of a step.
+    const bool is_new = majorant.touch(s, phi.subgradient(s), phi.curvature(s));
+    r                 = g + majorant.b;
+    if (is_new)
       {
-        // Squares of what rounding leaves of a vanishing load would underflow.
-        const auto size = [](const Eigen::VectorXd &v) {
-          return v.lpNorm<Eigen::Infinity>();
-        };
-        if (size(r - previous_r) <=
-              Tolerance::same_majorant * (size(E_s) + size(r)) &&
-            curvature_norm(E - previous_E) <=
-              Tolerance::same_majorant * curvature_norm(E))
-          return false;
+        M = S;
+        M += majorant.E;
       }
-    majorised = true;
-    M         = S;
-    M += E;
-    return true;
+    return is_new;
   }
 
 
@@ -169,18 +166,22 @@ namespace Debond
   {
     if (N.cols() > 0)
       {
+        // Along these motions S + E is singular to rounding, and a Cholesky
+        // factor would be of rounding.
         const Eigen::MatrixXd Z = motions_held_by_less(
           std::max(Tolerance::least_stiffness * stiffness, loose_stiffness));
         if (Z.cols() > 0)
           return minimise_along(Z);
       }
+    // The active set of the last majorant is mostly right for the next one;
+    // from afar the guess is better.
     if (guess != nullptr && !guess->empty())
-      active = guess->active_set(M, E, r);
+      active = guess->active_set(M, majorant.E, r, upper);
     const Eigen::VectorXd before = s;
     const BoundQPResult   qp =
       solve_bound_qp(M,
                      r,
-                     Eigen::VectorXd::Zero(s.size()),
+                     upper,
                      active,
                      is_trial && tolerance >= Tolerance::rough_majorant ?
                        tolerance :
@@ -199,10 +200,13 @@ namespace Debond
   {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (s(i) < 0.)
+      if (s(i) < upper(i))
         free.push_back(i);
+    // All in contact: the majorant has said all.
     if (free.empty())
       return;
+    // The second derivative of J itself, which for pieces that soften is less
+    // than that of the majorant.
     Eigen::MatrixXd A = S;
     A += phi.second_derivative(s);
     const Eigen::VectorXd force = g - S * s - phi.subgradient(s);
@@ -220,6 +224,8 @@ namespace Debond
         const DenseCholesky majorant(M(free, free));
         if (!majorant.is_positive_definite())
           return;
+        // So its powers lead to the motion along which J is least convex, on
+        // which majorants crawl away from a point that is no minimum.
         const Eigen::MatrixXd rest = M(free, free) - A(free, free);
         way                        = (s - before)(free);
         for (unsigned int k = 0; k < steps_to_least_convex && !way.isZero(0.);
@@ -228,6 +234,7 @@ namespace Debond
             way = rest * (way / way.lpNorm<Eigen::Infinity>());
             majorant.solve_in_place(way);
           }
+        // Downhill.
         if (way.dot(force(free)) < 0.)
           way *= -1.;
       }
@@ -244,17 +251,21 @@ namespace Debond
     const double size = ds.lpNorm<Eigen::Infinity>();
     if (!(size > 0.))
       return;
+    // Up to where the first component meets its bound: the active set is a
+    // matter of the next majorant.
     double limit = std::numeric_limits<double>::max();
     for (Eigen::Index i = 0; i < s.size(); ++i)
       if (ds(i) > 0.)
-        limit = std::min(limit, -s(i) / ds(i));
+        limit = std::min(limit, (upper(i) - s(i)) / ds(i));
     const Eigen::VectorXd start     = s;
     const double          work      = ds.dot(g - S * s);
     const double          stiffness = ds.dot(S * ds);
     const auto            slope_at  = [&](const double t) {
-      s = (start + t * ds).cwiseMin(0.);
+      s = (start + t * ds).cwiseMin(upper);
       return t * stiffness - work + phi.subgradient(s).dot(ds);
     };
+    // J along the line is a parabola as long as no point leaves its piece. From
+    // piece to piece, to where the slope is zero.
     double t = 0., slope = slope_at(0.);
     double beyond_kink =
       Tolerance::past_kink * s.lpNorm<Eigen::Infinity>() / size;
@@ -263,6 +274,8 @@ namespace Debond
          k < most_pieces_passed * s.size() && slope < -least_slope && t < limit;
          ++k)
       {
+        // The Newton step on the line, or where J is concave there one that
+        // grows.
         const double curvature =
           stiffness + ds.dot(phi.second_derivative(s) * ds);
         const double step =
@@ -303,8 +316,9 @@ namespace Debond
   Eigen::MatrixXd
   CondensedProblem::motions_held_by_less(const double most) const
   {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N.transpose() *
-                                                               (E * N));
+    // Of N'E N, as S is zero along N.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      N.transpose() * (majorant.E * N));
     return N * eigen.eigenvectors().leftCols(
                  (eigen.eigenvalues().array() <= most).count());
   }
@@ -316,9 +330,13 @@ namespace Debond
   {
     Eigen::MatrixXd towards  = Z.transpose();
     const double    furthest = towards.colwise().norm().maxCoeff();
-    for (auto node : towards.colwise())
-      if (node.norm() <= Tolerance::towards_foundation * furthest)
-        node.setZero();
+    for (Eigen::Index i = 0; i < towards.cols(); ++i)
+      if (std::isinf(upper(i)) ||
+          towards.col(i).norm() <= Tolerance::towards_foundation * furthest)
+        towards.col(i).setZero();
+    // The forces along Z are the sum of what pressures of the foundation
+    // balance and of the nearest motion p along which no node comes to the
+    // foundation. They do work along p, and nothing else holds it.
     const std::optional<Eigen::VectorXd> unbalanced =
       project_on_polar_cone(towards, Z.transpose() * r);
     return unbalanced && unbalanced->norm() > Tolerance::balanced * r.norm();
@@ -338,67 +356,79 @@ namespace Debond
     if (loose_motions.cols() == 0)
       delta = std::min(delta, held(Z.col(0)));
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
-    const double          forces   = r.norm();
 
-    Eigen::VectorXd x         = s, last_step;
-    unsigned int    n_systems = 0;
+    Eigen::VectorXd x = s, last_step = Eigen::VectorXd::Zero(s.size());
+    Minimisation    result = {SolverStatus::quadratic_program, 0, 0};
     for (unsigned int k = 0; k < maximum_proximal_steps; ++k)
       {
-        const BoundQPResult qp =
-          solve_bound_qp(proximal,
-                         r + delta * Z * (Z.transpose() * x),
-                         Eigen::VectorXd::Zero(x.size()),
-                         active);
-        n_systems += qp.steps;
+        const BoundQPResult qp = solve_bound_qp(
+          proximal, r + delta * Z * (Z.transpose() * x), upper, active);
+        result.active_set_steps += qp.steps;
         if (!can_be_verified(qp.status))
-          return {qp.status, n_systems, 0};
-        const Eigen::VectorXd step   = qp.x - x;
-        const Eigen::VectorXd motion = Z.transpose() * step;
-        x                            = qp.x;
+          {
+            result.status = qp.status;
+            return result;
+          }
+        const Eigen::VectorXd step = qp.x - x;
+        x                          = qp.x;
         // The proximal force balances what the foundation does not, and where
         // bonds are soft what rounding leaves of S x.
-        const bool is_balanced =
-          delta * motion.norm() <=
-          std::max(Tolerance::balanced * forces,
-                   Tolerance::row_of_product * stiffness * x.norm());
-        if (is_balanced)
+        if (delta * (Z.transpose() * step).norm() <=
+            std::max(Tolerance::balanced * r.norm(),
+                     Tolerance::row_of_product * stiffness * x.norm()))
           {
-            s = x;
-            return {qp.status, n_systems, 0};
+            s             = x;
+            result.status = qp.status;
+            return result;
           }
-        // Where something soft holds, each is a part of the one before; else it
-        // would go on like this for ever. Both, until it meets the foundation.
-        // Bonds that are about to break beside a node that stays in contact
-        // turn the softest motions a little out of the one about that node.
-        const Eigen::VectorXd rigid   = N * (N.transpose() * step);
-        const double          ratio   = last_step.size() > 0 ?
-                                          step.dot(last_step) / last_step.squaredNorm() :
-                                          0.;
-        const bool            is_same = ratio >= 1. - Tolerance::same_step;
-        const bool            is_rigid =
-          (step - rigid).norm() <= Tolerance::same_step * step.norm();
-        if (ratio > 0. && (is_rigid || !is_same) &&
-            (step - ratio * last_step).norm() <=
-              Tolerance::same_step * step.norm())
+        if (!extrapolate(delta, step, last_step, x))
           {
-            const Eigen::VectorXd &way = is_same ? rigid : step;
-            const double least = Tolerance::towards_foundation * way.norm();
-            // Bonds that are far softer than delta let steps repeat as nothing
-            // does, but end the sum of the steps at delta over their stiffness.
-            const bool is_loose =
-              is_same && held(way) <= loose_stiffness * way.squaredNorm();
-            if (is_loose && way.maxCoeff() <= least)
-              return {SolverStatus::comes_off, n_systems, 0};
-            double further = is_loose ? std::numeric_limits<double>::max() :
-                             is_same  ? delta * way.squaredNorm() / held(way) :
-                                        ratio / (1. - ratio);
-            for (Eigen::Index j = 0; j < x.size(); ++j)
-              if (way[j] > least)
-                further = std::min(further, -x[j] / way[j]);
-            x += further * way;
+            result.status = SolverStatus::comes_off;
+            return result;
           }
         last_step = step;
       }
-    return {SolverStatus::quadratic_program, n_systems, 0};
+    return result;
+  }
+
+
+
+  bool
+  CondensedProblem::extrapolate(const double           delta,
+                                const Eigen::VectorXd &step,
+                                const Eigen::VectorXd &last_step,
+                                Eigen::VectorXd       &x) const
+  {
+    // After the first step there is no ratio, which is not a number then.
+    const double ratio = step.dot(last_step) / last_step.squaredNorm();
+    const double same  = Tolerance::same_step * step.norm();
+    if (!(ratio > 0.) || (step - ratio * last_step).norm() > same)
+      return true;
+    // The difference from a ratio next to 1 is rounding, and the stiffness of
+    // the bonds along the step gives the rest of the series. It is the rigid
+    // part of the step that they hold. Bonds that are about to break beside a
+    // node that stays in contact turn the softest motions a little out of the
+    // one about that node, which is no part of any series.
+    const bool            repeats = ratio >= 1. - Tolerance::same_step;
+    const Eigen::VectorXd rigid   = N * (N.transpose() * step);
+    if (repeats && (step - rigid).norm() > same)
+      return true;
+    const Eigen::VectorXd &way     = repeats ? rigid : step;
+    const double           least   = Tolerance::towards_foundation * way.norm();
+    double                 further = ratio / (1. - ratio);
+    if (repeats && held(way) > loose_stiffness * way.squaredNorm())
+      further = delta * way.squaredNorm() / held(way);
+    else if (repeats)
+      {
+        // Without a node that comes to the foundation this has no end.
+        if (way.maxCoeff() <= least)
+          return false;
+        further = std::numeric_limits<double>::max();
+      }
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (way[i] > least)
+        further = std::min(further, (upper[i] - x[i]) / way[i]);
+    x += further * way;
+    return true;
   }
 } // namespace Debond

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <sstream>
+#include <iomanip>
 
 namespace Debond
 {
@@ -18,12 +18,14 @@ namespace Debond
     std::string
     what_is_left(const MajoriseMinimiseResult &result, const double required)
     {
-      std::ostringstream text;
-      text.precision(3);
-      text << "majorise-minimise: relative residual " << result.residual
-           << " after " << result.history.size() << " iterations, required is "
-           << required << '.';
-      return text.str();
+      return words(std::setprecision(3),
+                   "majorise-minimise: relative residual ",
+                   result.residual,
+                   " after ",
+                   result.history.size(),
+                   " iterations, required is ",
+                   required,
+                   '.');
     }
   } // namespace
 
@@ -34,47 +36,59 @@ namespace Debond
                              const Monitor   &monitor) const
   {
     MajoriseMinimiseResult result;
-    MajorantProblem::State state       = problem.evaluate();
-    bool                   interrupted = false;
+    const auto             finish = [&result](const SolverStatus status,
+                                  const std::string &text = "") {
+      result.status  = status;
+      result.message = text;
+      return result;
+    };
+    const auto left = [&]() {
+      return what_is_left(result, parameters.tolerance);
+    };
+    MajorantProblem::State state = problem.evaluate();
+    const auto             note  = [&]() {
+      result.functional = state.functional;
+      result.residual   = state.residual;
+    };
+    // J(x_{k+1}) <= majorant(x_{k+1}) <= majorant(x_k) = J(x_k), for the
+    // majorant that touches J at x_k: so J never rises, but for rounding.
+    bool interrupted = false;
     while (true)
       {
-        result.functional = state.functional;
-        result.residual   = state.residual;
+        note();
         if (!std::isfinite(state.residual))
-          {
-            result.status = SolverStatus::not_finite;
-            result.message =
-              "objective: the functional or its subgradient is "
-              "not a finite number. Check the data of the scene.";
-            return result;
-          }
+          return finish(SolverStatus::not_finite,
+                        "objective: the functional or its subgradient is "
+                        "not a finite number. Check the data of the scene.");
         if (has_converged(state))
-          {
-            result.status = SolverStatus::success;
-            return result;
-          }
-        // What is converged is a result, whenever the signal came.
+          return finish(SolverStatus::success);
+        // A converged point is a result, whenever the signal came.
         if (interrupted)
-          {
-            result.status = SolverStatus::interrupted;
-            break;
-          }
+          return finish(SolverStatus::interrupted, left());
         if (result.history.size() == parameters.maximum_iterations)
-          break;
+          return finish(SolverStatus::iteration_limit,
+                        left() + " Try more iterations.");
 
+        // Majorise. As long as the majorant changes it needs no exact minimum.
+        // What this iteration is compared with.
+        const MajorantProblem::State before = state;
+        const bool                   is_new = problem.majorise();
+        const double                 tolerance =
+          std::max(parameters.tolerance, state.residual_rounding);
+        double inner_tolerance =
+          is_new ? std::max(0.5 * tolerance, forcing * state.residual) :
+                   0.5 * tolerance;
+
+        // Minimise, and better if J has risen, as it may where a minimum of the
+        // majorant is not exact.
+        const auto has_risen = [&]() {
+          return state.functional > before.functional +
+                                      before.functional_rounding +
+                                      state.functional_rounding;
+        };
         MajoriseMinimiseIteration iteration = {};
         iteration.iteration =
           static_cast<unsigned int>(result.history.size()) + 1;
-
-        const double tolerance =
-          std::max(parameters.tolerance, state.residual_rounding);
-        // As long as the majorant changes it needs no exact minimum.
-        double     inner_tolerance = 0.5 * tolerance;
-        const bool new_majorant    = problem.majorise();
-        if (new_majorant)
-          inner_tolerance = std::max(inner_tolerance, forcing * state.residual);
-        const double previous_residual = state.residual;
-        const double upper = state.functional + state.functional_rounding;
         do
           {
             const MajorantProblem::Minimisation inner =
@@ -83,75 +97,57 @@ namespace Debond
             iteration.linear_iterations += inner.linear_iterations;
             iteration.operations += inner.operations;
             if (inner.status == SolverStatus::interrupted)
-              {
-                result.status  = SolverStatus::interrupted;
-                result.message = what_is_left(result, parameters.tolerance);
-                return result;
-              }
+              return finish(SolverStatus::interrupted, left());
             if (inner.status == SolverStatus::comes_off)
-              {
-                result.status = SolverStatus::comes_off;
-                result.message =
-                  "neither the bonds that are left nor the foundation hold the "
-                  "body: J falls without end.";
-                return result;
-              }
+              return finish(SolverStatus::comes_off,
+                            "neither the bonds that are left nor the "
+                            "foundation hold the body: J falls without end.");
             if (!can_be_verified(inner.status))
-              {
-                std::ostringstream text;
-                text.precision(3);
-                text << "majorise-minimise: the convex subproblem of iteration "
-                     << iteration.iteration << " was not solved to "
-                     << inner_tolerance << " in " << iteration.active_set_steps
-                     << " active-set steps. Try another method.";
-                result.status  = SolverStatus::quadratic_program;
-                result.message = text.str();
-                return result;
-              }
+              return finish(
+                SolverStatus::quadratic_program,
+                words(std::setprecision(3),
+                      "majorise-minimise: the convex subproblem of iteration ",
+                      iteration.iteration,
+                      " was not solved to ",
+                      inner_tolerance,
+                      " in ",
+                      iteration.active_set_steps,
+                      " active-set steps. Try another method."));
             state = problem.evaluate();
             inner_tolerance *= forcing;
           }
-        while (state.functional > upper + state.functional_rounding &&
-               inner_tolerance > 0.01 * tolerance);
-        // Where the optimality conditions hold, J has no more to fall.
-        const bool is_converged = has_converged(state);
-        const bool risen =
-          state.functional > upper + state.functional_rounding && !is_converged;
+        while (has_risen() && inner_tolerance > 0.01 * tolerance);
 
-        iteration.functional = result.functional = state.functional;
-        iteration.residual = result.residual = state.residual;
-        iteration.n_active                   = state.n_active;
+        note();
+        // A step that fails the tests below is in the history, too.
+        iteration.functional = state.functional;
+        iteration.residual   = state.residual;
+        iteration.n_active   = state.n_active;
         result.history.push_back(iteration);
-        if (risen)
-          {
-            std::ostringstream text;
-            text.precision(3);
-            text << "majorise-minimise: J rose by " << state.functional - upper
-                 << " in iteration " << iteration.iteration
-                 << ", with the relative residual " << state.residual
-                 << ", required is " << parameters.tolerance
-                 << ". Try a larger stop tolerance or another method.";
-            result.status  = SolverStatus::no_descent;
-            result.message = text.str();
-            return result;
-          }
+        // Where the optimality conditions hold, J has no more to fall.
+        if (has_risen() && !has_converged(state))
+          return finish(
+            SolverStatus::no_descent,
+            words(std::setprecision(3),
+                  "majorise-minimise: J rose by ",
+                  state.functional - before.functional -
+                    before.functional_rounding,
+                  " in iteration ",
+                  iteration.iteration,
+                  ", with the relative residual ",
+                  state.residual,
+                  ", required is ",
+                  parameters.tolerance,
+                  ". Try a larger stop tolerance or another method."));
         // The minimum of the same majorant once more, and no better: this is
         // what rounding leaves.
-        if (!new_majorant && !is_converged &&
-            state.residual > 0.5 * previous_residual)
-          {
-            result.status  = SolverStatus::stagnated;
-            result.message = what_is_left(result, parameters.tolerance) +
-                             " To minimise the same majorant again leaves no "
-                             "less.";
-            return result;
-          }
+        if (!is_new && !has_converged(state) &&
+            state.residual > 0.5 * before.residual)
+          return finish(SolverStatus::stagnated,
+                        left() +
+                          " To minimise the same majorant again leaves no "
+                          "less.");
         interrupted = monitor && !monitor(iteration);
       }
-
-    result.message = what_is_left(result, parameters.tolerance);
-    if (result.status == SolverStatus::iteration_limit)
-      result.message += " Try more iterations.";
-    return result;
   }
 } // namespace Debond

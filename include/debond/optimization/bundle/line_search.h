@@ -42,7 +42,7 @@ namespace Debond
    * subgradient at y_{k+1}.
    */
   LineSearchResult
-  line_search(const LineRestriction          &line,
+  line_search(const Functional::Line         &line,
               const DofVector                &d,
               const double                    d_norm,
               const double                    v,

@@ -4,27 +4,26 @@
 
 #include <debond/base/dof_vector.h>
 #include <debond/base/views.h>
+#include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/majorise/bound_qp.h>
-#include <debond/optimization/objective.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 namespace Debond
 {
   /**
-   * The direction problem for s <= 0 in the metric M = S + E(x), where S is a
-   * dense symmetric positive definite matrix (the energy of the elastic body)
-   * and E(x) the curvature of the branches of Phi at x. Active sets for the
-   * bounds; on each of them the multipliers of the cuts solve a BundleQP
-   * without bounds.
+   * The direction problem for s <= upper in the metric M = S + E(x), where S is
+   * a dense symmetric positive definite matrix (the energy of the elastic body)
+   * and E(x) the curvature of the quadratics that touch Phi at x. Active sets
+   * for the bounds; on each of them the multipliers of the cuts solve a
+   * BundleQP without bounds.
    *
    * Keeps references to S and Phi.
    */
   class MetricDirection : public DirectionProblem
   {
   public:
-    MetricDirection(const MatrixView         &S,
-                    const PiecewiseQuadratic &phi,
-                    const unsigned int        bundle_size);
+    MetricDirection(const PiecewiseProblem &problem,
+                    const unsigned int      bundle_size);
 
     bool
     is_feasible(const DofVector &x) const override;
@@ -62,6 +61,7 @@ namespace Debond
 
   private:
     const MatrixView          S;
+    const Eigen::VectorXd     upper;
     const PiecewiseQuadratic &phi;
     unsigned int              m = 0; ///< number of subgradients
     Eigen::MatrixXd           eta;   ///< a column for each

@@ -2,7 +2,8 @@
 #ifndef debond_optimization_bundle_proximal_bundle_h
 #define debond_optimization_bundle_proximal_bundle_h
 
-#include <debond/optimization/objective.h>
+#include <debond/optimization/bundle/direction_problem.h>
+#include <debond/optimization/bundle/functional.h>
 #include <debond/optimization/status.h>
 
 #include <functional>
@@ -117,7 +118,7 @@ namespace Debond
   /**
    * The proximal bundle method of the paper's Section 4 for
    *
-   *     min J(x)  subject to  x in K = {x : x_i <= c_i, i in bounds}
+   *     min J(x)  subject to  x in K = {x : x_i <= upper_i, i in bounds}
    *
    * with the Euclidean proximal term, the subgradient locality measure, long,
    * short and null steps, and the bundle emptied when it is full.
@@ -135,7 +136,7 @@ namespace Debond
 
     /// Improves x. Throws std::invalid_argument if x is not in K.
     ProximalBundleResult
-    minimize(const Objective   &objective,
+    minimize(const Functional  &functional,
              const UpperBounds &bounds,
              DofVector         &x,
              const Monitor     &monitor = {}) const;
@@ -144,7 +145,7 @@ namespace Debond
     /// has to have room for `bundle_size` subgradients; the parameter u is not
     /// used. The method is one, whatever the metric.
     ProximalBundleResult
-    minimize(const Objective  &objective,
+    minimize(const Functional &functional,
              DirectionProblem &direction_problem,
              DofVector        &x,
              const Monitor    &monitor = {}) const;

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_global_branch_and_bound_h
 #define debond_optimization_global_branch_and_bound_h
 
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 #include <debond/optimization/interval.h>
 
 #include <limits>
@@ -20,10 +20,10 @@ namespace Debond
     /// With 0 there is only the bound at the start, NodeBound::bound_at().
     unsigned int maximum_nodes = 1000000;
 
-    double maximum_seconds = std::numeric_limits<double>::infinity();
+    double maximum_seconds = infinity;
 
     /// For the open nodes.
-    double maximum_bytes = std::numeric_limits<double>::infinity();
+    double maximum_bytes = infinity;
 
     unsigned int n_threads = 1;
   };
@@ -72,15 +72,15 @@ namespace Debond
 
 
   /**
-   * The global minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by branch and bound
-   * on the branches of Phi.
+   * The global minimum of 1/2 s'S s - g's + Phi(s), s <= upper <= 0, by branch
+   * and bound on the pieces of Phi.
    *
-   * A node leaves each unknown some branches, and NodeBound bounds it. The open
+   * A node leaves each unknown some pieces, and NodeBound bounds it. The open
    * nodes with the lowest bounds are next, some at a time, in as many threads
    * as there are. The order of the nodes does not depend on the number of
    * threads, so that only a limit of time makes a result depend on the machine.
    *
-   * @p start is a good point, with s <= 0.
+   * @p start is a good point within the bounds.
    */
   BranchAndBoundResult
   branch_and_bound(const BranchAndBoundParameters &parameters,

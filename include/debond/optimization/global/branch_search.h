@@ -4,7 +4,7 @@
 
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/moves.h>
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -17,8 +17,8 @@ namespace Debond
   /// A problem as a search needs to know it. Keeps references.
   struct SearchProblem : public PiecewiseProblem
   {
-    /// Says on which branch a node is (lumped_branches()).
-    const SeparableBranches &lumped;
+    /// Says on which piece a node is (lumped_energy()).
+    const SeparableEnergy &lumped;
 
     const NeighbourGraph   &neighbours;
     const MajoriseMinimise &method;
@@ -35,7 +35,7 @@ namespace Debond
 
   struct BranchSearchParameters
   {
-    /// Start from rest and from all unknowns on each further branch as well.
+    /// Start from rest and from all unknowns on each further piece as well.
     bool starts = true;
 
     /// Nodes by which the edge of a patch moves at first, and further if that
@@ -75,12 +75,12 @@ namespace Debond
 
   /**
    * Improves a minimum by starts from rest and from all nodes on each further
-   * branch, and by the moves of moves_from() and moves_by_stretch(). Each new
+   * piece, and by the moves of moves_from() and moves_by_stretch(). Each new
    * state goes through majorise-minimise and is taken if the functional falls;
-   * then the moves begin anew. @p s has to be <= 0.
+   * then the moves begin anew. @p s has to be within the bounds.
    *
    * Most trials slide into a minimum that another trial has ended in. Where
-   * each unknown has a law of its own, the branches at a point say what its
+   * each unknown has a law of its own, the pieces at a point say what its
    * majorant is, so that a trial that comes to a state on the way of another
    * one ends where that did. Majorants of trials are minimised roughly, so the
    * way might have been another one: what is taken is a minimum all the same.
@@ -92,13 +92,13 @@ namespace Debond
 
 
 
-  /// Each unknown has @p branches with its @p stretches and @p weights[i]
+  /// Each unknown has @p pieces with its @p stretches and @p weights[i]
   /// times their second derivative; with those of Phi this is Phi itself if
   /// each unknown has a multiple of them for its own.
-  SeparableBranches
-  lumped_branches(const PiecewiseEnergy     &branches,
-                  const Eigen::VectorXd     &weights,
-                  const std::vector<double> &stretches = {});
+  SeparableEnergy
+  lumped_energy(const PiecewiseEnergy     &pieces,
+                const Eigen::VectorXd     &weights,
+                const std::vector<double> &stretches = {});
 
 
 

@@ -12,7 +12,7 @@ namespace Debond
 {
   /// f(s) = c/2 s^2 + pieces of a PiecewiseEnergy that follow each other, c
   /// >= 0.
-  struct BranchEnergy
+  struct ShiftedEnergy
   {
     double                              convexity; ///< c
     std::vector<PiecewiseEnergy::Piece> pieces;    ///< from 0 downwards
@@ -36,16 +36,16 @@ namespace Debond
 
 
   /**
-   * The convex envelope of a BranchEnergy on [lower, upper], upper <= 0: parts
+   * The convex envelope of a ShiftedEnergy on [lower, upper], upper <= 0: parts
    * of its convex pieces, and between them lines that touch these, or meet the
    * ends of concave ones.
    */
   class ConvexEnvelope
   {
   public:
-    ConvexEnvelope(const BranchEnergy &f,
-                   const double        lower,
-                   const double        upper);
+    ConvexEnvelope(const ShiftedEnergy &f,
+                   const double         lower,
+                   const double         upper);
 
     double
     value(const double s) const;
@@ -71,7 +71,7 @@ namespace Debond
     line_at(const double s) const;
 
   private:
-    BranchEnergy f;
+    ShiftedEnergy f;
   };
 
 
@@ -88,11 +88,11 @@ namespace Debond
    * There the difference is concave, and not below the parabola with the
    * curvature of f on the far side that meets f where the line touches.
    */
-  class RoundedBranches
+  class RoundedEnergy
   {
   public:
     /// @p D > 0.
-    RoundedBranches(const PiecewiseEnergy &f, const double D);
+    RoundedEnergy(const PiecewiseEnergy &f, const double D);
 
     /// f with one piece in place of each line.
     PiecewiseEnergy

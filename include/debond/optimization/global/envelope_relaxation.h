@@ -17,10 +17,10 @@ namespace Debond
   /// <= 0, A symmetric and positive definite.
   struct BoxProblem
   {
-    Eigen::MatrixXd           A;
-    Eigen::VectorXd           g;
-    std::vector<BranchEnergy> f;
-    Eigen::VectorXd           lower, upper;
+    Eigen::MatrixXd            A;
+    Eigen::VectorXd            g;
+    std::vector<ShiftedEnergy> f;
+    Eigen::VectorXd            lower, upper;
   };
 
   /**

@@ -3,7 +3,7 @@
 #define debond_optimization_global_moves_h
 
 #include <debond/base/views.h>
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 
 #include <set>
 #include <vector>
@@ -16,14 +16,14 @@ namespace Debond
   using NeighbourGraph = std::vector<NodeSet>;
 
   /// Nodes that go down to a piece, or up to the one above it.
-  struct BranchMove
+  struct PieceMove
   {
     unsigned int piece;
     NodeSet      down, up;
   };
 
   /**
-   * Moves from a state, for each kink of branches with up to @p n_pieces
+   * Moves from a state, for each kink of laws with up to @p n_pieces
    * pieces. Patches are the connected parts of the nodes below the kink (with
    * the paper's law: the broken ones), and of those above. The edge of a lower
    * patch (an end of an interval in 2D, all around in 3D) goes out or in by up
@@ -31,8 +31,8 @@ namespace Debond
    * side as a whole, which merges its neighbours, or in its middle, which
    * splits it.
    */
-  std::vector<BranchMove>
-  moves_from(const BranchState    &state,
+  std::vector<PieceMove>
+  moves_from(const PieceState     &state,
              const NeighbourGraph &graph,
              const unsigned int    n_pieces,
              const unsigned int    maximum_shift,
@@ -43,9 +43,9 @@ namespace Debond
   /// The move of an edge, once it has paid, taken @p n layers of nodes further:
   /// those next to its nodes that are still on the other side in @p state.
   /// Without nodes where there are none.
-  BranchMove
-  beyond(const BranchMove     &move,
-         const BranchState    &state,
+  PieceMove
+  beyond(const PieceMove      &move,
+         const PieceState     &state,
          const NeighbourGraph &graph,
          const unsigned int    n);
 
@@ -60,8 +60,8 @@ namespace Debond
    * The nodes that are there already are part of the move, so that all of them
    * begin in the middle of their pieces.
    */
-  std::vector<BranchMove>
-  moves_by_stretch(const BranchState &state,
+  std::vector<PieceMove>
+  moves_by_stretch(const PieceState  &state,
                    const VectorView  &s,
                    const unsigned int n_pieces);
 } // namespace Debond

@@ -3,7 +3,7 @@
 #define debond_optimization_global_node_bound_h
 
 #include <debond/optimization/global/envelope_relaxation.h>
-#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/global/separable_energy.h>
 
 #include <array>
 #include <optional>
@@ -18,7 +18,7 @@ namespace Debond
     unsigned int    number;
     Eigen::VectorXd lower, upper;
     Eigen::VectorXd x;     ///< where its relaxation starts
-    Eigen::VectorXd shift; ///< convexity moved to the branches
+    Eigen::VectorXd shift; ///< convexity moved to the terms of Phi
 
     bool
     operator<(const ProofNode &other) const
@@ -57,8 +57,8 @@ namespace Debond
 
 
   /**
-   * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0,
-   * Phi with branches.
+   * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <=
+   * upper <= 0, Phi with pieces.
    *
    * A node's box leaves each unknown some pieces in a row: if it is a convex
    * one, the unknown is decided. The others' terms are replaced by their convex
@@ -73,13 +73,12 @@ namespace Debond
   class NodeBound
   {
   public:
-    NodeBound(const MatrixView        &S,
-              const VectorView        &g,
-              const SeparableBranches &phi)
-      : phi(phi)
-      , n(static_cast<unsigned int>(g.size()))
-      , S(S)
-      , g(g)
+    NodeBound(const SeparableProblem &problem)
+      : phi(problem.phi)
+      , n(static_cast<unsigned int>(problem.g.size()))
+      , S(problem.S)
+      , g(problem.g)
+      , upper(problem.upper)
     {}
 
     /// The box in which points are not above @p best_value; nothing if S is not
@@ -108,10 +107,10 @@ namespace Debond
     balls(const ProofNode &node) const;
 
   private:
-    const SeparableBranches &phi;
-    const unsigned int       n;
-    Eigen::MatrixXd          S;
-    Eigen::VectorXd          g;
+    const SeparableEnergy &phi;
+    const unsigned int     n;
+    Eigen::MatrixXd        S;
+    Eigen::VectorXd        g, upper;
   };
 } // namespace Debond
 

@@ -23,16 +23,16 @@ namespace Debond
    * The rule by which active-set methods for x <= b go on: bounds that are
    * exceeded enter, those with a negative multiplier leave, all at once as in
    * the primal-dual active set method (Hintermueller, Ito, Kunisch, SIAM J.
-   * Optim. 13, 2002). If that goes on for too long, only the first of them
-   * changes, which ends after finitely many steps for positive definite
-   * matrices (Murty, Math. Programming 7, 1974).
+   * Optim. 13, 2002). Once the number of wrong indices has not fallen for long,
+   * only the first of them changes, which ends after finitely many steps for
+   * positive definite matrices (Murty, Math. Programming 7, 1974).
    */
   class ActiveSetRule
   {
   public:
     /// @p excess is x - b outside the active set, @p mu the multipliers in
     /// it; a sign counts only beyond @p excess_noise and @p mu_noise.
-    /// Returns the number of indices that changed.
+    /// Returns the number of wrong indices.
     unsigned int
     update(const Eigen::VectorXd &excess,
            const Eigen::VectorXd &mu,
@@ -40,8 +40,13 @@ namespace Debond
            const double           mu_noise,
            ActiveSet             &active);
 
+    /// Whether the number of wrong indices has not fallen for long.
+    bool
+    wanders() const;
+
   private:
-    unsigned int n_updates = 0;
+    std::size_t  fewest = std::numeric_limits<std::size_t>::max();
+    unsigned int idle   = 0; ///< updates since there were fewer
   };
 
 
@@ -68,11 +73,10 @@ namespace Debond
    * definite M, started at @p active, which is updated. Each step solves on
    * the free components with a Cholesky factorisation.
    *
-   * All wrong indices are exchanged at once, as by ActiveSetRule. Matrices of
-   * slender bodies, where fourth derivatives count, can make that wander; when
-   * the number of wrong indices does not fall any more, projected Newton steps
-   * take over (Bertsekas, SIAM J. Control Optim. 20, 1982), with which the
-   * functional falls until rounding hides it. Then the status is stagnated.
+   * Wrong indices are exchanged by ActiveSetRule. Matrices of slender bodies,
+   * where fourth derivatives count, can make that wander; then projected Newton
+   * steps take over (Bertsekas, SIAM J. Control Optim. 20, 1982), with which
+   * the functional falls until rounding hides it. Then the status is stagnated.
    *
    * With a @p tolerance above zero the exchanges end as soon as the projection
    * onto x <= b meets the optimality conditions to this part of the largest

@@ -16,7 +16,7 @@
 namespace Debond
 {
   /**
-   * Where bounds of min 1/2 x'(S + E)x - r'x, x <= 0, may be active: the
+   * Where bounds of min 1/2 x'(S + E)x - r'x, x <= upper, may be active: the
    * problem is solved on subspaces x = P_1 ... P_k x_k, coarsest first, each
    * minimum, after a projected Gauss-Seidel sweep on the next finer space,
    * being where that one's active set starts (nested iteration). From there
@@ -45,9 +45,10 @@ namespace Debond
     ActiveSet
     active_set(const Eigen::MatrixXd             &M,
                const Eigen::SparseMatrix<double> &E,
-               const Eigen::VectorXd             &r) const
+               const Eigen::VectorXd             &r,
+               const Eigen::VectorXd             &upper) const
     {
-      return active_set(0, M, E, r);
+      return active_set(0, M, E, r, upper);
     }
 
   private:
@@ -61,10 +62,20 @@ namespace Debond
     active_set(const unsigned int                 level,
                const Eigen::MatrixXd             &M,
                const Eigen::SparseMatrix<double> &E,
-               const Eigen::VectorXd             &r) const;
+               const Eigen::VectorXd             &r,
+               const Eigen::VectorXd             &upper) const;
 
     std::vector<Level> levels;
   };
+
+
+
+  /// Bounds of s_k with which P s_k <= @p upper, for a P with entries >= 0 and
+  /// sums of rows of at most 1, as of interpolation: the least of the bounds
+  /// that an entry of s_k has a part in.
+  Eigen::VectorXd
+  coarse_bounds(const Eigen::SparseMatrix<double> &P,
+                const Eigen::VectorXd             &upper);
 
 
 
@@ -78,7 +89,8 @@ namespace Debond
    * A starting point for a problem from its minimum over the subspaces s = P_1
    * P_2 ... P_k s_k, coarsest first, from rest, and each minimum being the
    * start of the next finer one (nested iteration). The prolongations, finest
-   * first, must have entries >= 0, so that s_k <= 0 gives s <= 0.
+   * first, must have entries >= 0, so that a point within coarse_bounds() is
+   * within the bounds.
    *
    * A level on which @p method does not converge passes on what it reached, and
    * is named in @p failures. After the coarsest level, @p on_coarsest may

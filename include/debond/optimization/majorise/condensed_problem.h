@@ -4,14 +4,15 @@
 
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/majorant.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 namespace Debond
 {
   /**
-   * 1/2 s'S s - g's + Phi(s) subject to s <= 0 with a dense symmetric S that is
-   * positive definite but for given motions. Majorants are minimised by active
+   * A PiecewiseProblem with a dense symmetric S that is positive definite but
+   * for given motions. Majorants are minimised by active
    * sets with a Cholesky factorisation each, exactly whatever the tolerance
    * unless minimise_roughly() was called.
    *
@@ -29,17 +30,16 @@ namespace Debond
   class CondensedProblem : public MajorantProblem
   {
   public:
-    /// Keeps references; @p s is the current point and has to be <= 0. The
-    /// active set of the first majorant starts where it is zero. The columns
+    /// Keeps references to what @p problem refers to and to @p s, the current
+    /// point, which has to be within the bounds. The active set of the first
+    /// majorant starts where it is at them. The columns
     /// of @p free_motions span the null space of S, of which rounding may have
     /// left anything up to all of S; @p stiffness is what S is made of there,
     /// in its units.
-    CondensedProblem(const MatrixView         &S,
-                     const VectorView         &g,
-                     const PiecewiseQuadratic &phi,
-                     Eigen::VectorXd          &s,
-                     const Eigen::MatrixXd    &free_motions = {},
-                     const double              stiffness    = 0.);
+    CondensedProblem(const PiecewiseProblem &problem,
+                     Eigen::VectorXd        &s,
+                     const Eigen::MatrixXd  &free_motions = {},
+                     const double            stiffness    = 0.);
 
     /// From now on a majorant's active set starts from this guess, if it is not
     /// null, in place of the one before.
@@ -89,6 +89,7 @@ namespace Debond
     const MatrixView          S;
     const double              stiffness;
     const VectorView          g;
+    const Eigen::VectorXd     upper;
     const PiecewiseQuadratic &phi;
     Eigen::VectorXd          &s;
 
@@ -105,7 +106,7 @@ namespace Debond
     double
     held(const Eigen::VectorXd &v) const
     {
-      return v.dot(E * v);
+      return v.dot(majorant.E * v);
     }
 
     /// Returns whether the majorant has no minimum: no pressures of the
@@ -113,18 +114,41 @@ namespace Debond
     bool
     falls_along(const Eigen::MatrixXd &Z) const;
 
-    /// By proximal steps along the columns of Z.
+    /**
+     * Minimises the majorant by proximal steps along the columns of Z, which
+     * are orthonormal: x_{k+1} is the minimum within the bounds of
+     *
+     *     1/2 x'M x - r'x + delta/2 |Z'(x - x_k)|^2.
+     *
+     * The steps converge to a minimum if there is one, but slowly: along a
+     * motion that the bonds hold with a stiffness c, and as long as the same
+     * bounds are active, what is missing to the minimum becomes q = delta /
+     * (delta + c) times as large with each, and so do the steps. All that
+     * follow are q / (1 - q) = delta / c times the last one, and extrapolate()
+     * adds them at once, or as far as to the next bound. Then other bounds are
+     * active; as there are finitely many active sets, this ends. Where nothing
+     * holds the motion, q is 1: the majorant falls along it as far as to the
+     * next bound, or for ever.
+     */
     Minimisation
     minimise_along(const Eigen::MatrixXd &Z);
 
-    /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
-    bool                        majorised = false;
-    bool                        is_trial  = false;
-    Eigen::SparseMatrix<double> E;
-    Eigen::MatrixXd             M;
-    Eigen::VectorXd             r;
-    ActiveSet                   active;
-    const ActiveSetGuess       *guess = nullptr;
+    /// Adds to @p x what follows @p step if it is a part of @p last_step, as in
+    /// a geometric series. Returns false if that has no end.
+    bool
+    extrapolate(const double           delta,
+                const Eigen::VectorXd &step,
+                const Eigen::VectorXd &last_step,
+                Eigen::VectorXd       &x) const;
+
+    /// The majorant of J, 1/2 s'M s - r's + const, M = S + E and r = g + b with
+    /// that of Phi.
+    Majorant              majorant;
+    Eigen::MatrixXd       M;
+    Eigen::VectorXd       r;
+    ActiveSet             active;
+    bool                  is_trial = false;
+    const ActiveSetGuess *guess    = nullptr;
   };
 } // namespace Debond
 

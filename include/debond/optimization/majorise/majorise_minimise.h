@@ -18,7 +18,7 @@ namespace Debond
    *
    * q a convex quadratic, s some components of x and Phi a
    * PiecewiseQuadratic: the current point x, and a solver for the convex
-   * problem in which Phi is replaced by its branch at a point.
+   * problem in which Phi is replaced by the Majorant at a point.
    */
   class MajorantProblem
   {
@@ -110,10 +110,10 @@ namespace Debond
 
   /**
    * Majorise-minimise for the functional of a MajorantProblem: Phi is replaced
-   * by its branch at the current point, which lies above it, and the convex
+   * by its Majorant at the current point, which lies above it, and the convex
    * problem that is left is solved, exactly or until what its solver leaves is
    * a tenth of the residual it started from. The functional never rises; as
-   * there are finitely many branches, the method ends at a point that is the
+   * there are finitely many pieces, the method ends at a point that is the
    * minimum of its own majorant and so satisfies the optimality conditions
    * (for quadrature points that move with s, and where Phi softens, it
    * converges in the limit).

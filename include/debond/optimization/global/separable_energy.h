@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_optimization_global_separable_branches_h
-#define debond_optimization_global_separable_branches_h
+#ifndef debond_optimization_global_separable_energy_h
+#define debond_optimization_global_separable_energy_h
 
 #include <debond/optimization/piecewise_energy.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -10,20 +10,27 @@
 namespace Debond
 {
   /// The piece that holds at each unknown.
-  using BranchState = std::vector<unsigned int>;
+  using PieceState = std::vector<unsigned int>;
 
 
 
   /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own.
-  struct SeparableBranches : public PiecewiseQuadratic
+  struct SeparableEnergy : public PiecewiseQuadratic
   {
     std::vector<PiecewiseEnergy> f;
 
-    explicit SeparableBranches(const std::vector<PiecewiseEnergy> &f)
+    explicit SeparableEnergy(const std::vector<PiecewiseEnergy> &f)
       : f(f)
     {}
 
-    BranchState
+    /// The piece that unknown i is on.
+    const PiecewiseEnergy::Piece &
+    piece(const unsigned int i, const VectorView &s) const
+    {
+      return f[i][f[i].index(s(i))];
+    }
+
+    PieceState
     state(const VectorView &s) const;
 
     double
@@ -55,7 +62,7 @@ namespace Debond
     largest_value() const;
   };
 
-  using SeparableProblem = BoundedProblem<SeparableBranches>;
+  using SeparableProblem = BoundedProblem<SeparableEnergy>;
 } // namespace Debond
 
 #endif
