@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 namespace Debond
@@ -411,32 +410,27 @@ namespace Debond
                   Verification<dim>          &result)
     {
       const std::vector<std::string> &names = unknowns.support_names();
-      for (const std::string &name :
-           std::set<std::string>(names.begin(), names.end()))
-        {
-          DofVector of_support(unknowns.n_dofs());
-          for (const auto &[dof, support] : unknowns.supported())
-            if (names[support] == name)
-              of_support(dof) = clamped(dof);
-          result.reactions[name] =
-            resultant<dim>(unknowns.cartesian_forces(of_support));
-        }
-      if (unknowns.pairs().empty())
-        return;
-      // Where two supports hold glued nodes the force of the first one is in
-      // the resultant of neither: it acts on both nodes.
-      const DofVector on_high = unknowns.contact_forces(clamped);
-      std::map<unsigned int, std::string> support_of;
+      for (const std::string &name : names)
+        result.reactions[name];
+      std::map<unsigned int, unsigned int> of_node;
       for (const auto &[dof, support] : unknowns.supported())
-        support_of[static_cast<unsigned int>(dof / dim)] = names[support];
-      for (const auto &pair : unknowns.pairs().all())
-        if (support_of.count(pair.first) > 0)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double force = pair.sign * on_high(dim * pair.first + d);
-              result.reactions[support_of[pair.first]][d] += force;
-              result.reactions[support_of[pair.second]][d] -= force;
-            }
+        of_node[static_cast<unsigned int>(dof / dim)] = support;
+      for (const auto &[dof, support] : unknowns.supported())
+        {
+          dealii::Tensor<1, dim> force;
+          force[dof % dim] = clamped(dof);
+          // What holds a jump acts on both nodes, which two supports may hold.
+          for (const BasisStep step : {BasisStep::frames, BasisStep::jumps})
+            if (const auto *row =
+                  unknowns.basis().find(step,
+                                        static_cast<unsigned int>(dof / dim)))
+              {
+                force = force * row->to_unknowns;
+                for (const auto &[other, weight] : row->others)
+                  result.reactions[names[of_node.at(other)]] -= weight * force;
+              }
+          result.reactions[names[support]] += force;
+        }
     }
 
 

@@ -10,48 +10,44 @@
 namespace Debond
 {
   template <int dim>
-  NodePairs<dim>::NodePairs(const unsigned int                    n_nodes,
-                            const std::vector<BoundaryFace<dim>> &high,
+  NodePairs<dim>::NodePairs(const std::vector<BoundaryFace<dim>> &high,
                             const std::vector<BoundaryFace<dim>> &low)
   {
-    if (high.empty())
-      return;
-    std::multimap<double, std::pair<unsigned int, dealii::Point<dim>>> of_low;
-    std::vector<char> is_known(n_nodes, 0);
+    using Node = std::pair<unsigned int, dealii::Point<dim>>;
+    std::multimap<double, Node> by_place;
+    std::set<unsigned int>      of_low, of_high;
     for (const BoundaryFace<dim> &face : low)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
-        if (is_known[face.indices[n]] == 0)
-          {
-            is_known[face.indices[n]] = 1;
-            of_low.emplace(place_on_line(face.positions[n]),
-                           std::pair(face.indices[n], face.positions[n]));
-          }
-    number_of_node.assign(n_nodes, dealii::numbers::invalid_unsigned_int);
+        if (of_low.insert(face.indices[n]).second)
+          by_place.emplace(place_on_line(face.positions[n]),
+                           Node(face.indices[n], face.positions[n]));
     for (const BoundaryFace<dim> &face : high)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
         {
           const unsigned int node = face.indices[n];
-          if (is_known[node] == 1)
+          if (of_low.count(node) > 0)
             shared.insert(node);
-          if (is_known[node] == 1 ||
-              number_of_node[node] != dealii::numbers::invalid_unsigned_int)
-            continue;
-          const dealii::Point<dim> &point = face.positions[n];
-          const double              near  = Tolerance::same_place *
-                              face.positions[0].distance(face.positions[1]);
-          const double place = place_on_line(point);
-          auto         other = of_low.lower_bound(place - 2. * near);
-          while (other != of_low.end() && other->first <= place + 2. * near &&
-                 point.distance(other->second.second) > near)
-            ++other;
-          if (other == of_low.end() ||
-              point.distance(other->second.second) > near)
-            throw std::invalid_argument(
-              "the meshes on the two sides of an interface do not match at " +
-              point_text(point));
-          number_of_node[node] = number_of_node[other->second.first] =
-            static_cast<unsigned int>(pairs.size());
-          pairs.push_back({node, other->second.first, 1.});
+          else if (of_high.insert(node).second)
+            {
+              const dealii::Point<dim> &point = face.positions[n];
+              const double              near  = Tolerance::same_place *
+                                  face.positions[0].distance(face.positions[1]);
+              const double place = place_on_line(point);
+              const auto   end   = by_place.upper_bound(place + 2. * near);
+              const auto   other =
+                std::find_if(by_place.lower_bound(place - 2. * near),
+                             end,
+                             [&](const auto &entry) {
+                               return point.distance(entry.second.second) <=
+                                      near;
+                             });
+              if (other == end)
+                throw std::invalid_argument(
+                  "the meshes on the two sides of an interface do not match "
+                  "at " +
+                  point_text(point));
+              pairs.push_back({node, other->second.first, 1.});
+            }
         }
   }
 

@@ -282,7 +282,7 @@ namespace Debond
                 "they are glued to each other, at " +
                 point_text(nodes.at(pair.first).position) +
                 ": hold one of them as far as the other one there");
-            pairs.exchange(pair);
+            pairs.exchange(k);
             pair = pairs.all()[k];
           }
         const auto first = nodes.find(pair.first);

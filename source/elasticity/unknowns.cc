@@ -81,7 +81,7 @@ namespace Debond
     change_of_basis.set(BasisStep::coefficients,
                         edge_coefficients(with_coefficients),
                         n_nodes);
-    node_pairs = NodePairs<dim>(n_nodes, faces(conditions.high_sides), low);
+    node_pairs = NodePairs<dim>(faces(conditions.high_sides), low);
 
     NodeSupports<dim> node_supports;
     node_supports.clamp(faces(conditions.clamped), conditions);
@@ -92,10 +92,14 @@ namespace Debond
                               change_of_basis);
     node_supports.glue(node_pairs);
     names_of_supports = node_supports.names();
+    std::map<unsigned int, unsigned int> first_of;
+    for (const auto &pair : node_pairs.all())
+      first_of[pair.second] = pair.first;
     for (BoundaryFace<dim> &face : contact)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
-        if (const auto *pair = node_pairs.find(face.indices[n]))
-          face.indices[n] = pair->first;
+        if (const auto entry = first_of.find(face.indices[n]);
+            entry != first_of.end())
+          face.indices[n] = entry->second;
 
     constrained   = ConstrainedDofs<dim>(dofs.n_dofs(), supports);
     contact_space = make_contact_space(
@@ -116,8 +120,8 @@ namespace Debond
     const std::vector<std::string> places  = find_bodies();
     const auto                     in_body = [this](Support<dim> &support) {
       support.body = body_of(support.node);
-      if (const auto *pair = node_pairs.find_first(support.node))
-        support.other = body_of(pair->second);
+      if (const auto *row = basis().find(BasisStep::jumps, support.node))
+        support.other = body_of(row->others[0].first);
     };
     std::for_each(held.begin(), held.end(), in_body);
     free_motions = free_rigid_motions(held, diameter, places);
@@ -301,24 +305,45 @@ namespace Debond
 
   template <int dim>
   std::vector<DofVector>
+  ElasticUnknowns<dim>::displacements_of(
+    const std::vector<std::vector<RigidMotion<dim>>> &motions) const
+  {
+    if (motions.empty())
+      return {};
+    const std::vector<dealii::Point<dim>> positions = node_positions();
+    std::vector<DofVector>                result;
+    for (const std::vector<RigidMotion<dim>> &of_bodies : motions)
+      {
+        DofVector &u = result.emplace_back(n_dofs());
+        for (unsigned int node = 0; node < positions.size(); ++node)
+          {
+            const dealii::Tensor<1, dim> way =
+              of_bodies[body_of(node)](positions[node]);
+            for (unsigned int d = 0; d < dim; ++d)
+              u(dim * node + d) = way[d];
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<DofVector>
   ElasticUnknowns<dim>::rigid_body_modes() const
   {
-    constexpr unsigned int n_rotations = dim * (dim - 1) / 2;
-    std::vector<DofVector> modes(dim + n_rotations, DofVector(dofs.n_dofs()));
-    const std::vector<dealii::Point<dim>> places = node_positions();
-    for (unsigned int i = 0; i < n_dofs(); i += dim)
+    constexpr unsigned int                     n = dim * (dim + 1) / 2;
+    std::vector<std::vector<RigidMotion<dim>>> motions;
+    for (unsigned int k = 0; k < n; ++k)
       {
-        for (unsigned int d = 0; d < dim; ++d)
-          modes[d][i + d] = 1.;
-        // The rotation in the plane of the axes d and e.
-        unsigned int rotation = dim;
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
-            {
-              modes[rotation][i + d] = -places[i / dim][e];
-              modes[rotation][i + e] = places[i / dim][d];
-            }
+        RigidMotion<dim> motion;
+        if (k < dim)
+          motion.translation[k] = 1.;
+        else // in the planes of x and y, x and z, y and z
+          motion.rotation[n - 1 - k] = k == 4 ? -1. : 1.;
+        motions.emplace_back(n_bodies(), motion);
       }
+    std::vector<DofVector> modes = displacements_of(motions);
     for (DofVector &mode : modes)
       {
         mode = basis().to_unknowns(mode);

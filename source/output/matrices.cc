@@ -7,11 +7,12 @@
 
 #include <boost/serialization/utility.hpp>
 
+#include <Eigen/SparseCore>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <tuple>
 #include <utility>
 
 namespace Debond
@@ -69,35 +70,49 @@ namespace Debond
 
 
 
-    /// The lower triangle, by rows.
-    template <int dim>
+    using Entries =
+      std::vector<std::pair<std::pair<unsigned int, unsigned int>, double>>;
+
+    /// Entries by rows and columns of a square matrix with @p n rows.
     void
-    write_sparse(const ElasticProblem<dim> &problem, const std::string &path)
+    write_sparse(const std::string &symmetry,
+                 const unsigned int n,
+                 Entries            entries,
+                 const std::string &path)
     {
-      using Place       = std::pair<unsigned int, unsigned int>;
-      const auto &A     = problem.matrix();
-      const Order order = problem.unknowns().serial_order();
-      std::vector<std::pair<Place, double>> own, all;
-      for (const auto row :
-           problem.unknowns().dof_handler().locally_owned_dofs())
-        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
-          if (const Place place(order[row], order[entry->column()]);
-              place.second <= place.first)
-            own.emplace_back(place, entry->value());
-      for (const auto &of_rank :
-           dealii::Utilities::MPI::all_gather(problem.unknowns().communicator(),
-                                              own))
-        all.insert(all.end(), of_rank.begin(), of_rank.end());
-      std::sort(all.begin(), all.end());
+      std::sort(entries.begin(), entries.end());
       write(
-        "coordinate real symmetric",
+        "coordinate real " + symmetry,
         [&](std::ostream &out) {
-          out << A.m() << ' ' << A.n() << ' ' << all.size() << '\n';
-          for (const auto &[place, value] : all)
+          out << n << ' ' << n << ' ' << entries.size() << '\n';
+          for (const auto &[place, value] : entries)
             out << place.first + 1 << ' ' << place.second + 1 << ' ' << value
                 << '\n';
         },
         path);
+    }
+
+
+
+    /// The lower triangle of A.
+    template <int dim>
+    void
+    write_operator(const ElasticProblem<dim> &problem, const std::string &path)
+    {
+      const auto &A     = problem.matrix();
+      const Order order = problem.unknowns().serial_order();
+      Entries     own, all;
+      for (const auto row :
+           problem.unknowns().dof_handler().locally_owned_dofs())
+        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
+          if (order[entry->column()] <= order[row])
+            own.push_back(
+              {{order[row], order[entry->column()]}, entry->value()});
+      for (const auto &of_rank :
+           dealii::Utilities::MPI::all_gather(problem.unknowns().communicator(),
+                                              own))
+        all.insert(all.end(), of_rank.begin(), of_rank.end());
+      write_sparse("symmetric", A.m(), all, path);
     }
 
 
@@ -118,37 +133,44 @@ namespace Debond
 
 
 
-    /// F in u = F x, x being Cartesian components.
+    /// F in u = F x, x being Cartesian components at nodes.
     template <int dim>
     void
     write_frames(const ElasticUnknowns<dim> &unknowns, const std::string &path)
     {
-      const Order       order = unknowns.serial_order();
-      std::vector<bool> is_cartesian(unknowns.n_dofs(), true);
-      std::vector<std::tuple<std::size_t, std::size_t, double>> entries;
-      for (const auto &row : unknowns.basis().rows(BasisStep::frames))
-        for (unsigned int i = 0; i < dim; ++i)
-          {
-            is_cartesian[dim * row.node + i] = false;
-            for (unsigned int j = 0; j < dim; ++j)
-              if (row.to_unknowns[i][j] != 0.)
-                entries.emplace_back(order[dim * row.node + i],
-                                     order[dim * row.node + j],
-                                     row.to_unknowns[i][j]);
-          }
-      for (unsigned int i = 0; i < is_cartesian.size(); ++i)
-        if (is_cartesian[i])
-          entries.emplace_back(order[i], order[i], 1.);
-      std::sort(entries.begin(), entries.end());
-      write(
-        "coordinate real general",
-        [&](std::ostream &out) {
-          out << unknowns.n_dofs() << ' ' << unknowns.n_dofs() << ' '
-              << entries.size() << '\n';
-          for (const auto &[i, j, number] : entries)
-            out << i + 1 << ' ' << j + 1 << ' ' << number << '\n';
-        },
-        path);
+      using Matrix                    = Eigen::SparseMatrix<double>;
+      const ChangeOfBasis<dim> &basis = unknowns.basis();
+      const unsigned int        n     = unknowns.n_dofs();
+      Matrix                    F(n, n);
+      F.setIdentity();
+      for (const BasisStep step :
+           {BasisStep::coefficients, BasisStep::jumps, BasisStep::frames})
+        {
+          std::vector<Eigen::Triplet<double>> entries;
+          for (unsigned int i = 0; i < n; ++i)
+            if (basis.find(step, i / dim) == nullptr)
+              entries.emplace_back(i, i, 1.);
+          for (const BasisRow<dim> &row : basis.rows(step))
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                {
+                  const unsigned int at    = dim * row.node + i;
+                  const double       entry = row.to_unknowns[i][j];
+                  entries.emplace_back(at, dim * row.node + j, entry);
+                  for (const auto &[other, weight] : row.others)
+                    entries.emplace_back(at, dim * other + j, -weight * entry);
+                }
+          Matrix of_step(n, n);
+          of_step.setFromTriplets(entries.begin(), entries.end());
+          F = Matrix(of_step * F);
+        }
+      const Order order = unknowns.serial_order();
+      Entries     entries;
+      for (int j = 0; j < F.outerSize(); ++j)
+        for (Matrix::InnerIterator entry(F, j); entry; ++entry)
+          if (entry.value() != 0.)
+            entries.push_back({{order[entry.row()], order[j]}, entry.value()});
+      write_sparse("general", n, entries, path);
     }
   } // namespace
 
@@ -178,7 +200,7 @@ namespace Debond
       files.push_back({name, [wanted]() { return wanted; }, write});
     };
     add("A.mtx", [&scene](const std::string &path) {
-      write_sparse(scene.problem(), path);
+      write_operator(scene.problem(), path);
     });
     add("f.mtx", [&scene](const std::string &path) {
       const auto &problem = scene.problem();

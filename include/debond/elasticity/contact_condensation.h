@@ -68,27 +68,6 @@ namespace Debond
 
 
 
-  /// The Cartesian displacements at all nodes under a rigid motion, which is
-  /// given for each body. All ranks have to call it.
-  template <int dim>
-  DofVector
-  displacement_of(const ElasticUnknowns<dim>          &unknowns,
-                  const std::vector<RigidMotion<dim>> &of_bodies)
-  {
-    const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
-    DofVector                             u(unknowns.n_dofs());
-    for (unsigned int node = 0; node < positions.size(); ++node)
-      {
-        const dealii::Tensor<1, dim> way =
-          of_bodies[unknowns.body_of(node)](positions[node]);
-        for (unsigned int d = 0; d < dim; ++d)
-          u(dim * node + d) = way[d];
-      }
-    return u;
-  }
-
-
-
   /// The condensed problem, in which @p adhesion is what its Condensation was
   /// made with; under @p load, or that of the whole problem.
   template <int dim>
@@ -121,9 +100,10 @@ namespace Debond
   {
     const auto     &motions = unknowns.held_by_contact().motions;
     Eigen::MatrixXd result(unknowns.contact().size(), motions.size());
-    for (unsigned int k = 0; k < motions.size(); ++k)
-      result.col(k) = unknowns.contact().trace(
-        unknowns.basis().to_unknowns(displacement_of(unknowns, motions[k])));
+    Eigen::Index    k = 0;
+    for (const DofVector &u : unknowns.displacements_of(motions))
+      result.col(k++) =
+        unknowns.contact().trace(unknowns.basis().to_unknowns(u));
     return result;
   }
 
@@ -165,10 +145,10 @@ namespace Debond
     const DofVector    forces = problem.fields().applied_nodal_forces(factors);
     const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
     WorkOfLoads        work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-    for (Eigen::Index k = 0; k < n; ++k)
+    Eigen::Index       k = 0;
+    for (const DofVector &u : problem.unknowns().displacements_of(motions))
       {
-        const DofVector u = displacement_of(problem.unknowns(), motions[k]);
-        work.along[k]     = forces * u;
+        work.along[k] = forces * u;
         for (unsigned int i = 0; i < u.size(); i += dim)
           {
             dealii::Tensor<1, dim> force, way;
@@ -179,6 +159,7 @@ namespace Debond
               }
             work.largest[k] += force.norm() * way.norm();
           }
+        ++k;
       }
     return work;
   }

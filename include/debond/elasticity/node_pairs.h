@@ -50,11 +50,9 @@ namespace Debond
 
     NodePairs() = default;
 
-    /// @p n_nodes: of the mesh. The first nodes are those of @p high. Throws
-    /// std::invalid_argument if the nodes of the sides are not at the same
-    /// places.
-    NodePairs(const unsigned int                    n_nodes,
-              const std::vector<BoundaryFace<dim>> &high,
+    /// The first nodes are those of @p high. Throws std::invalid_argument if
+    /// the nodes of the sides are not at the same places.
+    NodePairs(const std::vector<BoundaryFace<dim>> &high,
               const std::vector<BoundaryFace<dim>> &low);
 
     bool
@@ -69,24 +67,6 @@ namespace Debond
       return pairs;
     }
 
-    /// The pair of which the node is one, null if it is of none.
-    const Pair *
-    find(const unsigned int node) const
-    {
-      return number_of_node.empty() ||
-                 number_of_node[node] == dealii::numbers::invalid_unsigned_int ?
-               nullptr :
-               &pairs[number_of_node[node]];
-    }
-
-    /// The pair of which the node is the first one, or null.
-    const Pair *
-    find_first(const unsigned int node) const
-    {
-      const Pair *const pair = find(node);
-      return pair != nullptr && pair->first == node ? pair : nullptr;
-    }
-
     /// The nodes that both sides share, where an interface ends: there is no
     /// jump.
     const std::set<unsigned int> &
@@ -95,12 +75,11 @@ namespace Debond
       return shared;
     }
 
-    /// Makes the other node the first one.
+    /// Makes the other node the first one of a pair.
     void
-    exchange(const Pair &pair)
+    exchange(const unsigned int k)
     {
-      Pair &own = pairs[number_of_node[pair.first]];
-      own       = {pair.second, pair.first, -pair.sign};
+      pairs[k] = {pairs[k].second, pairs[k].first, -pairs[k].sign};
     }
 
     /// The step of a ChangeOfBasis from displacements to jumps.
@@ -115,9 +94,8 @@ namespace Debond
     }
 
   private:
-    std::vector<Pair>         pairs;
-    std::vector<unsigned int> number_of_node; ///< of its pair; or empty
-    std::set<unsigned int>    shared;
+    std::vector<Pair>      pairs;
+    std::set<unsigned int> shared;
   };
 } // namespace Debond
 

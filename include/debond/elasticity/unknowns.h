@@ -251,6 +251,12 @@ namespace Debond
       return basis().forces_to_nodal(forces, BasisStep::frames);
     }
 
+    /// The Cartesian displacements at nodes under rigid motions, each of which
+    /// is given for each body. All ranks have to call it.
+    std::vector<DofVector>
+    displacements_of(
+      const std::vector<std::vector<RigidMotion<dim>>> &motions) const;
+
     /// Translations and rotations about the origin in the unknowns, zero where
     /// constrained: the near null space of A.
     std::vector<DofVector>
