@@ -525,9 +525,10 @@ namespace Debond
         certificate.lower -= certificate.reserve + own;
         certificate.reserve += 2. * own;
       }
-    catch (const FixedStateError &)
+    catch (const EquilibriumError &)
       {
-        // Bodies that only bonds hold, for instance, have no such bound. There
+        // Bodies that only bonds hold, for instance, have no such bound, and
+        // rounding may hide that of others. There
         // may be one for all minima all the same.
         if (trace_constants.empty())
           throw;

@@ -290,7 +290,7 @@ namespace Debond
               {
                 make(CertificateKind::fixed_state, scene, result);
               }
-            catch (const FixedStateError &)
+            catch (const EquilibriumError &)
               {
                 // The bound for bonds that may break need not have that.
               }

@@ -69,7 +69,8 @@ namespace Debond
       return ids.empty() ? std::vector<BoundaryFace<dim>>() :
                            boundary_faces(dofs, ids, conditions.names);
     };
-    // The foundation of a high side is the low one.
+    // An interface has one set of contact faces, those of its high side: its
+    // foundation is the low one.
     std::set<dealii::types::boundary_id> contact_ids = conditions.contact;
     for (const dealii::types::boundary_id id : conditions.low_sides)
       contact_ids.erase(id);
@@ -83,6 +84,9 @@ namespace Debond
                         n_nodes);
     node_pairs = NodePairs<dim>(faces(conditions.high_sides), low);
 
+    // The order matters: prescribe() reads the coefficients, and glue() may
+    // exchange the nodes of a pair, so that faces and jumps take the first
+    // nodes from it afterwards.
     NodeSupports<dim> node_supports;
     node_supports.clamp(faces(conditions.clamped), conditions);
     for (const PrescribedDisplacement<dim> &condition : supports.displacements)
@@ -92,6 +96,8 @@ namespace Debond
                               change_of_basis);
     node_supports.glue(node_pairs);
     names_of_supports = node_supports.names();
+    // Contact nodes of an interface are the first nodes of pairs, whose
+    // unknowns are the jumps.
     std::map<unsigned int, unsigned int> first_of;
     for (const auto &pair : node_pairs.all())
       first_of[pair.second] = pair.first;

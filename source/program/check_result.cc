@@ -223,7 +223,7 @@ namespace Debond
       }
 
     if (result.solve.status == SolverStatus::quadratic_program &&
-        !scene.problem().unknowns().held_by_contact().motions.empty())
+        !scene.problem().unknowns().is_held_by_supports())
       result.solve.message +=
         " Only its contact holds the body: where the bonds are softer than "
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";

@@ -10,9 +10,6 @@
 #include <debond/input/parameters.h>
 #include <debond/program/command_line.h>
 #include <debond/program/run.h>
-#include <debond/solve/method_choice.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <boost/program_options.hpp>
 
@@ -138,12 +135,7 @@ namespace Debond
 
       // To be valid a scene has to have a mesh, supports, loads and a method
       // that go together, all of which is found out by making it.
-      MethodChoice     choice = choose_method(parameters, parameters.solver);
-      const Scene<dim> scene(parameters,
-                             parameters.solver.start,
-                             MPI_COMM_WORLD);
-      choose_linear_solver(scene, parameters.solver, choice);
-      check_supports_of_method(choice, parameters.solver, scene);
+      validate<dim>(parameters);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;
     }

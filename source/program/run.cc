@@ -18,14 +18,15 @@ namespace Debond
 {
   namespace
   {
-    /// What a run has found and on which mesh, or before the end what it goes
-    /// on from. The state has the meshes that are done, why the last one is
-    /// short of its target, and what a later run would go on from.
+    /// What a run has found, on which mesh and how, or before the end what it
+    /// goes on from. The state has the meshes that are done, why the last one
+    /// is short of its target, and what a later run would go on from.
     template <int dim>
     struct Answer
     {
       std::shared_ptr<const Scene<dim>> scene;
-      FollowedPath<dim>                 path; ///< one load: without steps
+      MethodChoice                      choice; ///< on this mesh
+      FollowedPath<dim>                 path;   ///< one load: without steps
       RunState<dim>                     state;
     };
 
@@ -64,7 +65,8 @@ namespace Debond
 
 
     /// The scene on the first mesh of this run, with what an earlier one has
-    /// found there.
+    /// found there, and its method. Throws BadInput for all that is wrong with
+    /// the scene, so that nothing is lost in a solve.
     template <int dim>
     Answer<dim>
     begin(const Parameters &parameters, const RunState<dim> &earlier)
@@ -87,7 +89,25 @@ namespace Debond
         if (u->size() > 0)
           *u = from_serial_order(begun.scene->problem().unknowns(), *u);
       begun.path.progress = begun.state.path;
+      begun.choice        = choose_method(parameters, parameters.solver);
+      choose_linear_solver(*begun.scene, parameters.solver, begun.choice);
+      check_supports_of_method(begun.choice, parameters.solver, *begun.scene);
+      check_exact_displacement(parameters.verification.exact_displacement,
+                               *begun.scene);
       return begun;
+    }
+
+
+
+    /// Throws BadInput if the scene can have no certificate.
+    template <int dim>
+    Certification<dim>
+    certification_of(const Parameters &parameters, const Answer<dim> &begun)
+    {
+      return {parameters.certificate.kind,
+              parameters.accuracy.certified_width,
+              parameters.solver.proof,
+              begun.scene};
     }
 
 
@@ -97,20 +117,19 @@ namespace Debond
     class Run
     {
     public:
-      const Parameters   &parameters;
-      const RunOptions    options;
-      std::ostream       &out;
-      const SolveSettings settings; ///< on the first mesh
-      RunOutput<dim>     &output;
-      Record             &record;
+      const Parameters &parameters;
+      const RunOptions  options;
+      std::ostream     &out;
+      RunOutput<dim>   &output;
+      Record           &record;
 
       /// The minimum on one mesh.
       Answer<dim>
       minimise(Answer<dim> answer) const
       {
         const DofVector &start = answer.state.meshes.start;
-        answer.path.result     = Debond::solve(settings.choice,
-                                           settings.parameters,
+        answer.path.result     = Debond::solve(answer.choice,
+                                           parameters.solver,
                                            *answer.scene,
                                            log(),
                                            options.terminal,
@@ -164,15 +183,15 @@ namespace Debond
         try
           {
             AdaptiveResult<dim> adaptive =
-              solve_adaptively(settings,
+              solve_adaptively(settings(answer.choice),
                                parameters.accuracy,
                                goal,
                                answer.state.meshes,
                                observer,
                                std::move(answer.scene));
             answer.scene               = adaptive.scene;
+            answer.choice              = adaptive.choice;
             answer.path                = std::move(adaptive.path);
-            answer.path.result         = std::move(adaptive.solve);
             answer.state.meshes.levels = std::move(adaptive.levels);
             answer.state.shortfall     = adaptive.shortfall;
             // From here on a restart stays on this mesh.
@@ -200,7 +219,7 @@ namespace Debond
         output.begin_path(*answer.scene, answer.path.progress.steps);
         answer.path = follow_load_path<dim>(
           parameters.load_path,
-          settings,
+          settings(answer.choice),
           *answer.scene,
           answer.path,
           [&](const PathProgress<dim> &progress,
@@ -233,6 +252,12 @@ namespace Debond
       }
 
     private:
+      SolveSettings
+      settings(const MethodChoice &choice) const
+      {
+        return {choice, parameters.solver, parameters.verification.tolerance};
+      }
+
       /// For the iterations; null if there is none.
       std::ostream *
       log() const
@@ -275,6 +300,15 @@ namespace Debond
 
 
   template <int dim>
+  void
+  validate(const Parameters &parameters)
+  {
+    certification_of(parameters, begin(parameters, RunState<dim>()));
+  }
+
+
+
+  template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const RunOptions options)
   {
@@ -284,17 +318,9 @@ namespace Debond
       options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
     Answer<dim>    answer = begin(parameters, earlier);
     RunResult<dim> result;
-    result.times = {{"mesh", answer.scene->mesh_seconds()},
-                    {"assembly", answer.scene->assembly_seconds()}};
-    choose_linear_solver(*answer.scene, parameters.solver, choice);
-    check_supports_of_method(choice, parameters.solver, *answer.scene);
-    // Before the solve, so that nothing is lost if it is not finite somewhere.
-    check_exact_displacement(parameters.verification.exact_displacement,
-                             *answer.scene);
-    Certification<dim> certification(parameters.certificate.kind,
-                                     parameters.accuracy.certified_width,
-                                     parameters.solver.proof,
-                                     answer.scene);
+    result.times                     = {{"mesh", answer.scene->mesh_seconds()},
+                                        {"assembly", answer.scene->assembly_seconds()}};
+    Certification<dim> certification = certification_of(parameters, answer);
 
     std::optional<RunOutput<dim>> output;
     try
@@ -311,20 +337,17 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
     Record record(parameters.output.machine_details);
-    report_problem(*answer.scene, choice, parameters.solver.bundle.u, record);
+    report_problem(*answer.scene,
+                   answer.choice,
+                   parameters.solver.bundle.u,
+                   record);
     if (n_started_ranks() > 1 && record.has_details())
       record.line("ranks", std::to_string(n_started_ranks()));
     record.print(out);
 
     timer.restart();
-    answer =
-      Run<dim>{parameters,
-               options,
-               out,
-               {choice, parameters.solver, parameters.verification.tolerance},
-               *output,
-               record}
-        .solve(std::move(answer), certification.goal());
+    answer = Run<dim>{parameters, options, out, *output, record}.solve(
+      std::move(answer), certification.goal());
     result.times.emplace_back("solve", timer.wall_time());
     result.solve  = answer.path.result;
     result.levels = answer.state.meshes.levels;
@@ -339,7 +362,7 @@ namespace Debond
                  answer.state.shortfall,
                  result);
     certification.certify(answer.scene, result);
-    report_result(scene, choice, result, record);
+    report_result(scene, answer.choice, result, record);
     certification.report(record);
 
     // The summary comes last and names the cost of all that was written before,
@@ -349,7 +372,10 @@ namespace Debond
       {
         result.times.emplace_back("output", timer.wall_time());
         result.times.emplace_back("total", total.wall_time());
-        report_cost(result, choice, -least_of_ranks(-peak_memory()), record);
+        report_cost(result,
+                    answer.choice,
+                    -least_of_ranks(-peak_memory()),
+                    record);
         output->write_summary(record);
       }
     report_files(output->files_written(), record);
@@ -359,6 +385,8 @@ namespace Debond
 
 
 
-  template decltype(run<2>) run<2>;
-  template decltype(run<3>) run<3>;
+  template decltype(run<2>)      run<2>;
+  template decltype(run<3>)      run<3>;
+  template decltype(validate<2>) validate<2>;
+  template decltype(validate<3>) validate<3>;
 } // namespace Debond

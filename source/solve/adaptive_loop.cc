@@ -175,7 +175,7 @@ namespace Debond
             // The interpolated state keeps the fronts of the bonds, so that a
             // finer mesh stays with the same minimum and needs few steps.
             progress.start = divided_displacement(scene->problem(),
-                                                  result.solve.u,
+                                                  result.path.result.u,
                                                   body->ancestors(),
                                                   next->problem());
             observer.next_mesh_is_made(progress, *next);
@@ -201,13 +201,13 @@ namespace Debond
         // The proof is about one mesh, so it waits for the last one and starts
         // from its result.
         if (settings.parameters.prove &&
-            result.solve.status == SolverStatus::success)
-          result.solve = solve(choice,
-                               settings.parameters,
-                               *scene,
-                               nullptr,
-                               false,
-                               &result.solve.u);
+            result.path.result.status == SolverStatus::success)
+          result.path.result = solve(result.choice,
+                                     settings.parameters,
+                                     *scene,
+                                     nullptr,
+                                     false,
+                                     &result.path.result.u);
         result.scene  = scene;
         result.levels = progress.levels;
         return std::move(result);
@@ -271,7 +271,7 @@ namespace Debond
           }
         // Half a solve on a finer mesh is worth less than a finished one on a
         // coarser mesh.
-        const bool has_result = result.solve.u.size() > 0;
+        const bool has_result = result.path.result.u.size() > 0;
         if (has_result && solution.status == SolverStatus::interrupted)
           {
             interrupt();
@@ -279,17 +279,17 @@ namespace Debond
           }
         // From here on the result is that of this mesh, whatever it is worth;
         // only a signal leaves that of the mesh before in its place.
-        result.solve = std::move(solution);
-        result.path  = std::move(path);
-        scene        = here;
-        choice       = on_mesh.choice;
+        path.result   = std::move(solution);
+        result.path   = std::move(path);
+        scene         = here;
+        result.choice = on_mesh.choice;
         // Where the body comes off on the way, the factors before that count.
         const bool comes_off_later =
-          result.solve.status == SolverStatus::comes_off &&
+          result.path.result.status == SolverStatus::comes_off &&
           !result.path.progress.steps.empty();
         const bool is_usable =
-          (can_be_verified(result.solve.status) || comes_off_later) &&
-          !result.solve.minimum.interrupted;
+          (can_be_verified(result.path.result.status) || comes_off_later) &&
+          !result.path.result.minimum.interrupted;
         if (is_usable && result.shortfall.empty())
           look_at_goal(false);
         ended = !is_usable || !result.shortfall.empty();
@@ -299,14 +299,14 @@ namespace Debond
             // What a search has lowered J by on this mesh is no gain of
             // refinement, and is left out of the measured factor.
             const double search_gain =
-              result.solve.functional_from_start.value_or(functional) -
+              result.path.result.functional_from_start.value_or(functional) -
               functional;
             // What later meshes are compared with, and what log and summary say
             // of this one. add() sets its error_factor.
             AdaptiveLevel level = {scene->n_cells(),
                                    unknowns.n_free_dofs(),
                                    unknowns.contact().size(),
-                                   result.solve.iterations,
+                                   result.path.result.iterations,
                                    estimated_step,
                                    functional,
                                    estimate.relative(),
@@ -366,7 +366,7 @@ namespace Debond
           return;
         // A goal that cannot be looked at on this mesh ends the refinement with
         // its reason.
-        goal_here        = goal->look(scene, result.solve, is_last);
+        goal_here        = goal->look(scene, result.path.result, is_last);
         result.shortfall = goal_here.failure;
       }
 
@@ -453,8 +453,8 @@ namespace Debond
       void
       interrupt()
       {
-        result.solve.status = SolverStatus::interrupted;
-        result.solve.message =
+        result.path.result.status = SolverStatus::interrupted;
+        result.path.result.message =
           "The result is that of the last mesh that was finished.";
       }
 
@@ -481,7 +481,6 @@ namespace Debond
       dealii::Timer       timer;
       double              seconds = 0.; ///< before the timer started
 
-      MethodChoice                     choice; ///< on the mesh of the result
       std::shared_ptr<const Body<dim>> latest;
     };
   } // namespace

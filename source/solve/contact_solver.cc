@@ -79,7 +79,7 @@ namespace Debond
                                 [&](const unsigned int i) {
                                   return unknowns.is_constrained(i);
                                 },
-                                !unknowns.held_by_contact().motions.empty()),
+                                !unknowns.is_held_by_supports()),
                               make_cycle(scene, choice.has_levels)),
         problem.load(),
         prescribed_energy(problem, scene.adhesion()));

@@ -109,15 +109,6 @@ namespace Debond
 
 
 
-  double
-  condensed_functional(const PiecewiseProblem &problem, const VectorView &s)
-  {
-    Eigen::VectorXd point = s;
-    return CondensedProblem(problem, point).evaluate().functional;
-  }
-
-
-
   template <int dim>
   Branch
   global_branch(const GlobalBranch         wanted,

@@ -127,7 +127,7 @@ namespace Debond
         , condensed(solver ? solver->condensed() : nullptr)
       {
         if (condensed != nullptr &&
-            scene.problem().unknowns().held_by_contact().motions.empty())
+            scene.problem().unknowns().is_held_by_supports())
           result.condition_estimate = condensed->condition_estimate();
         result.parts["condensation"] += timer.wall_time();
       }
@@ -157,9 +157,11 @@ namespace Debond
         result.parts["followed path"] += timer.wall_time();
       }
 
-      /// Whether all factors were solved and verified.
+      /// Whether there are steps and the last one is verified. The path may be
+      /// shorter than the scene's: a signal, or a body that comes off, leaves
+      /// no step.
       bool
-      is_whole() const
+      has_no_failure() const
       {
         return !steps.empty() && steps.back().message.empty();
       }
@@ -169,7 +171,7 @@ namespace Debond
       has_global_branch() const
       {
         return condensed != nullptr && parameters.has_global_branch() &&
-               scene.problem().unknowns().held_by_contact().motions.empty();
+               scene.problem().unknowns().is_held_by_supports();
       }
 
       /// Of a path without failures, condensed.
@@ -230,6 +232,8 @@ namespace Debond
       std::vector<LoadPathStep<dim>>
       find_arc()
       {
+        // needs_condensed() asks for it where there is an arc.
+        Assert(condensed != nullptr, dealii::ExcInternalError());
         timer.restart();
         const LoadPathArc<dim> arc = follow_arc<dim>({scene, *condensed},
                                                      points[0],
@@ -476,8 +480,9 @@ namespace Debond
       const Scene<dim>         &scene;
       const PathTable<dim>      table;
       const Interruption       &interruption = Interruption::by_signal();
-      dealii::Timer             timer;
-      SolveResult               result;
+      // Before the solver: its time when that is made is the condensation.
+      dealii::Timer timer;
+      SolveResult   result;
 
 
       MethodChoice                        choice;
@@ -509,9 +514,9 @@ namespace Debond
       observer(progress, verification, bonds);
     });
     const bool wants_branch = parameters.global_branch != GlobalBranch::none;
-    if (wants_branch && path.has_global_branch() && path.is_whole())
+    if (wants_branch && path.has_global_branch() && path.has_no_failure())
       path.find_global_branch();
-    if (parameters.arc && path.is_whole())
+    if (parameters.arc && path.has_no_failure())
       followed.arc = path.find_arc();
     followed.result = path.take_result();
     if (wants_branch && !path.has_global_branch())

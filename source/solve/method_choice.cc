@@ -14,10 +14,10 @@ namespace Debond
 {
   namespace
   {
-    /// The operations that a factorisation of a body in 3D may take: less is a
-    /// second, below which the choice hardly matters, and with a factorisation
-    /// the search is on all contact nodes. Aggregates take about ten times as
-    /// long as the coarser meshes of the body.
+    /// The operations that a factorisation may take: less is a second, below
+    /// which the choice hardly matters, and with a factorisation the search is
+    /// on all contact nodes. Aggregates take about ten times as long as the
+    /// coarser meshes of the body, and in 2D longer than any factorisation.
     constexpr double largest_factorisation = 2e10, of_aggregates = 10.;
 
 
@@ -77,7 +77,7 @@ namespace Debond
              path.arc ||
              (!path.factors.empty() &&
               path.global_branch == GlobalBranch::prove) ||
-             !scene.problem().unknowns().held_by_contact().motions.empty();
+             !scene.problem().unknowns().is_held_by_supports();
     }
 
 
@@ -239,7 +239,7 @@ namespace Debond
               why_multigrid = "a factorisation would take about " +
                               in_gib(direct_bytes) + " more, there are " +
                               in_gib(left);
-            else if (dim == 3 && !needs_S &&
+            else if ((dim == 3 || has_levels) && !needs_S &&
                      cost.operations > largest_factorisation *
                                          (has_levels ? 1. : of_aggregates) *
                                          more_cycles(problem.materials) *

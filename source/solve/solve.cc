@@ -15,12 +15,9 @@ namespace Debond
 {
   namespace
   {
-    using Vector = DofVector;
-
-
-
-    /// A search that was not asked for may take as many operations, some three
-    /// seconds, and a fifth of what factorisations of S take.
+    /// The least limit of operations of a search that was not asked for, some
+    /// three seconds, and what it may take more with many contact nodes: a part
+    /// of n_c^3, as a factorisation of S does.
     constexpr double least_search_operations = 2e10;
 
 
@@ -148,7 +145,7 @@ namespace Debond
   {
     dealii::Timer               timer;
     const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
-    const bool is_held = unknowns.held_by_contact().motions.empty();
+    const bool                  is_held  = unknowns.is_held_by_supports();
     progress.announce(choice.is_condensed ? "factorisation" : "multigrid",
                       unknowns.n_free_dofs());
     // Either J = c_0 + 1/2 s'S s - g's + Phi(s) on the contact normals alone,

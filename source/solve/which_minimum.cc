@@ -9,7 +9,6 @@
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/solve/global_branch.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/which_minimum.h>
 
@@ -273,7 +272,7 @@ namespace Debond
       {
         // The cheapest first: the certificate takes one factorisation, and
         // where it proves the result there is nothing to search for.
-        if (is_proved_at_start())
+        if (try_bound_at_point())
           return;
         guess =
           ActiveSetGuess(condensed.schur_complement(),
@@ -293,7 +292,7 @@ namespace Debond
         // be provable.
         edges.maximum_shift = 1;
         search_nodes(edges);
-        is_proved_at_start();
+        try_bound_at_point();
       }
 
       void
@@ -303,7 +302,7 @@ namespace Debond
       }
 
       bool
-      is_proved_at_start()
+      try_bound_at_point()
       {
         // Without branching the bound needs laws that are separable and have
         // finitely many quadratic pieces.

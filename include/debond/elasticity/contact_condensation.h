@@ -48,7 +48,7 @@ namespace Debond
         return problem.unknowns().is_constrained(i);
       },
       prescribed_energy(problem, adhesion),
-      !problem.unknowns().held_by_contact().motions.empty());
+      !problem.unknowns().is_held_by_supports());
   }
 
 

@@ -186,6 +186,13 @@ namespace Debond
       return free_motions;
     }
 
+    /// Whether the supports alone hold the body, so that A is definite.
+    bool
+    is_held_by_supports() const
+    {
+      return free_motions.motions.empty();
+    }
+
     const std::vector<SupportedDof> &
     supported() const
     {

@@ -8,12 +8,12 @@ namespace Debond
   /// --help documents.
   enum class ExitCode
   {
-    success          = 0,
-    internal_error   = 1, ///< a fault of the program
-    bad_input        = 2, ///< command line or scene; nothing was written
-    not_converged    = 3, ///< the stop criterion was not met
-    interrupted      = 4, ///< by SIGINT or SIGTERM, the last iterate is written
-    output_not_saved = 5  ///< a directory or a file could not be written
+    success        = 0,
+    internal_error = 1,  ///< a fault of the program
+    bad_input      = 2,  ///< command line or scene; nothing was written
+    not_converged  = 3,  ///< the stop criterion or the verification was not met
+    interrupted    = 4,  ///< by SIGINT or SIGTERM, the last iterate is written
+    output_not_saved = 5 ///< a directory or a file could not be written
   };
 } // namespace Debond
 

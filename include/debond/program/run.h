@@ -33,6 +33,11 @@ namespace Debond
   run(const Parameters &parameters,
       std::ostream     &out,
       const RunOptions  options);
+
+  /// Throws what run() throws before it writes anything.
+  template <int dim>
+  void
+  validate(const Parameters &parameters);
 } // namespace Debond
 
 #endif

@@ -55,8 +55,9 @@ namespace Debond
     /// The scene on the last mesh on which there is a result.
     std::shared_ptr<const Scene<dim>> scene;
 
-    SolveResult                solve;
-    FollowedPath<dim>          path; ///< if the scene has one
+    MethodChoice choice; ///< on the last mesh
+
+    FollowedPath<dim>          path; ///< without steps if the scene has none
     std::vector<AdaptiveLevel> levels;
 
     /// The reason why the loop has not reached its target; empty if it has.

@@ -36,8 +36,9 @@ namespace Debond
   public:
     virtual ~ContactSolver() = default;
 
-    /// The next minimisation starts from normal displacements @p s of the
-    /// contact nodes, those of the displacement @p u where u_nu <= 0.
+    /// The next minimisation starts from @p u, whose normal displacements at
+    /// the contact nodes are @p s: what is condensed reads s alone, multigrid u
+    /// alone. Positive parts of s are cut off.
     virtual void
     start_from(const Eigen::VectorXd &s, const DofVector &u) = 0;
 
@@ -59,7 +60,8 @@ namespace Debond
     virtual Eigen::VectorXd
     point() const = 0;
 
-    /// All displacements at the factors of the last minimisation.
+    /// All degrees of freedom, w of ElasticUnknowns, at the factors of the last
+    /// minimisation, of which there has to be one.
     virtual DofVector
     displacement() const = 0;
 

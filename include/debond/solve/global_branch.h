@@ -43,10 +43,6 @@ namespace Debond
                 const Branch              &start,
                 const Interruption        &interruption,
                 const BranchMonitor       &monitor);
-
-  /// The value of the problem at @p s.
-  double
-  condensed_functional(const PiecewiseProblem &problem, const VectorView &s);
 } // namespace Debond
 
 #endif

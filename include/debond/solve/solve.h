@@ -14,9 +14,11 @@
 namespace Debond
 {
   /// Minimises the functional of the scene, by the given method. Iterations are
-  /// printed to @p out unless it is null. All methods but the Euclidean bundle
-  /// begin at @p start, if there is one. Ranks that share a scene call it
-  /// together, and all get the result.
+  /// printed to @p out unless it is null. It begins at @p start
+  /// unless that is null: then the Euclidean bundle begins at scene.start(),
+  /// the others at rest or at the minimum on coarser meshes or contact
+  /// boundaries. Ranks that share a scene call it together, and all get the
+  /// result.
   template <int dim>
   SolveResult
   solve(const MethodChoice     &choice,

@@ -22,7 +22,8 @@ namespace Debond
     SolverStatus status = SolverStatus::success;
     std::string  message;
 
-    DofVector   u;                ///< of all degrees of freedom
+    /// w of ElasticUnknowns: the displacement without what is prescribed.
+    DofVector   u;
     LoadFactors load_factor = 1.; ///< of the loads that u belongs to
     double      functional;       ///< J(u), from the strains of u
 

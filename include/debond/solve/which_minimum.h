@@ -51,7 +51,7 @@ namespace Debond
     /// With J in place of the condensed functional; of Solver/Prove only.
     std::vector<ProofProgress> proof_history;
 
-    /// Why there was no search or no proof.
+    /// What limits of work have left undone.
     std::vector<std::string> notes;
   };
 
@@ -71,8 +71,7 @@ namespace Debond
                       const Condensation          *condensed = nullptr);
 
   /// The search and the proof that are asked for, from the stationary point
-  /// @p s, which moves if they find a better one. Throws BadInput if they
-  /// cannot be done with the law.
+  /// @p s, which moves if they find a better one.
   template <int dim>
   WhichMinimum
   find_better_minimum(const SolverParameters      &parameters,

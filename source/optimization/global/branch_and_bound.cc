@@ -107,7 +107,8 @@ namespace Debond
             for (const Job &job : batch)
               {
                 take_if_better(job);
-                // What a signal has cut short is to be done again.
+                // A signal cuts jobs short, which are to be done again; a limit
+                // of work lets them end.
                 if (Interruption::by_signal().requested())
                   open.insert(job.node);
                 else

@@ -431,4 +431,13 @@ namespace Debond
     x += further * way;
     return true;
   }
+
+
+
+  double
+  condensed_functional(const PiecewiseProblem &problem, const VectorView &s)
+  {
+    Eigen::VectorXd point = s;
+    return CondensedProblem(problem, point).evaluate().functional;
+  }
 } // namespace Debond

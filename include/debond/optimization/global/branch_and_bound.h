@@ -47,7 +47,7 @@ namespace Debond
     node_limit,   ///< the nodes were used up
     time_limit,   ///< the time was used up
     memory_limit, ///< the open nodes take too much
-    interrupted,  ///< by the monitor
+    interrupted,  ///< SeparableProblem::interruption
     rounding,     ///< all is decided, rounding leaves a larger gap
     no_bound      ///< S is not safely positive definite: there is no bound
   };

@@ -150,6 +150,12 @@ namespace Debond
     bool                  is_trial = false;
     const ActiveSetGuess *guess    = nullptr;
   };
+
+
+
+  /// The value of the problem at @p s.
+  double
+  condensed_functional(const PiecewiseProblem &problem, const VectorView &s);
 } // namespace Debond
 
 #endif
