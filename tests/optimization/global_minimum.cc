@@ -245,13 +245,14 @@ namespace
   void
   test_limits(Random &random)
   {
-    const Problem            p = random_bonds(random, 8, true);
-    const Problem            q = hard_problem(random, 80);
+    const Problem            p    = random_bonds(random, 8, true);
+    const Problem            q    = hard_problem(random, 80);
+    const Vector             zero = Vector::Zero(80);
     BranchAndBoundParameters little;
     little.tolerance     = 1e-9;
     little.maximum_bytes = 2 * 4 * 80 * sizeof(double);
     const auto full =
-      branch_and_bound(little, {q.S, q.g, q.phi}, Vector::Zero(80));
+      branch_and_bound(little, {q.S, q.g, zero, q.phi}, Vector::Zero(80));
     section("limits");
     check("room for 2 nodes", full.status == ProofStatus::memory_limit);
     check("its gap is valid",
@@ -268,7 +269,9 @@ namespace
       }
     } third_time;
     const auto interrupted =
-      branch_and_bound({}, {q.S, q.g, q.phi, third_time}, Vector::Zero(80));
+      branch_and_bound({},
+                       {q.S, q.g, zero, q.phi, third_time},
+                       Vector::Zero(80));
     check("interrupted", interrupted.status == ProofStatus::interrupted);
     check("at once", third_time.asked == 3);
     check("with a valid gap",

@@ -45,7 +45,8 @@ namespace
         const WhichMinimum result = find_better_minimum(
           parameters.solver, adhesion, condensed, Interruption::by_signal(), s);
         is_proved = is_proved || result.kind == MinimumKind::global;
-        values.push_back(condensed_functional(condensed, adhesion, s));
+        values.push_back(
+          condensed_functional(condensed_problem(condensed, adhesion), s));
       }
     if (is_first_rank())
       std::cout << "a law that is rigid at first is proved: "
