@@ -38,7 +38,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 3, checksum " +
+      return "Debond run state 4, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
