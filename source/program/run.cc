@@ -72,6 +72,8 @@ namespace Debond
     begin(const Parameters &parameters, const RunState<dim> &earlier)
     {
       Answer<dim> begun;
+      // First of all, since it refuses what would not fit into memory.
+      begun.choice      = choose_method(parameters, parameters.solver);
       begun.scene       = make_first_scene<dim>(parameters,
                                           parameters.accuracy,
                                           parameters.solver.start,
@@ -89,7 +91,6 @@ namespace Debond
         if (u->size() > 0)
           *u = from_serial_order(begun.scene->problem().unknowns(), *u);
       begun.path.progress = begun.state.path;
-      begun.choice        = choose_method(parameters, parameters.solver);
       choose_linear_solver(*begun.scene, parameters.solver, begun.choice);
       check_supports_of_method(begun.choice, parameters.solver, *begun.scene);
       check_exact_displacement(parameters.verification.exact_displacement,
@@ -313,7 +314,6 @@ namespace Debond
   run(const Parameters &parameters, std::ostream &out, const RunOptions options)
   {
     dealii::Timer       total, timer;
-    MethodChoice        choice = choose_method(parameters, parameters.solver);
     const RunState<dim> earlier =
       options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
     Answer<dim>    answer = begin(parameters, earlier);

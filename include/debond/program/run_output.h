@@ -4,6 +4,7 @@
 
 #include <debond/base/directory_lock.h>
 #include <debond/certify/certification.h>
+#include <debond/input/parameters.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/record.h>
 #include <debond/program/run_state.h>
