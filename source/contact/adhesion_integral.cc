@@ -37,6 +37,9 @@ namespace Debond
   void
   AdhesionIntegral<dim>::break_for_good(const VectorView &s)
   {
+    // The memory of a point is the least stretch that it has ever had, so it
+    // only falls, and a second call with the same s changes nothing. Where
+    // there is no memory yet, reached is 0, which no stretch at s <= 0 exceeds.
     BondMemory memory;
     for_each_point(s, [&](const auto &, double stretch, double reached) {
       memory.push_back(std::min(reached, stretch));
@@ -60,6 +63,10 @@ namespace Debond
   void
   AdhesionIntegral<dim>::update()
   {
+    // Phi(0) is not zero in two cases only. A vertex with a prescribed
+    // displacement stretches the bonds beside it whatever s is, and bonds with
+    // a memory have dissipated energy. Otherwise there is nothing to be summed
+    // up, nor are there memories to be gathered.
     phi_at_zero = 0.;
     if (contact_boundary().held_vertices.empty() && broken.empty())
       return;
@@ -82,6 +89,9 @@ namespace Debond
   AdhesionIntegral<dim>::reached_at(const Face        &face,
                                     const unsigned int vertex) const
   {
+    // A held vertex has no entry in reached_of_nodes. With nodal quadrature it
+    // is a quadrature point itself, whose memory is found by its place on the
+    // face; with the other rules no point lies on it.
     if (!face.is_held(vertex))
       return reached(face.nodes[vertex]);
     if (!contact_points.is_nodal())
@@ -97,6 +107,9 @@ namespace Debond
   double
   AdhesionIntegral<dim>::value(const VectorView &s) const
   {
+    // This is the quadrature of the last term of J. Bonds that vary have the
+    // energy times j_1(s / stretch), so that one law serves all points and only
+    // two numbers a point are stored.
     double sum = 0.;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       sum += point.weight * point.bonds.energy * law.value(stretch, reached);
@@ -110,6 +123,10 @@ namespace Debond
   Eigen::VectorXd
   AdhesionIntegral<dim>::subgradient(const VectorView &s) const
   {
+    // By the chain rule the derivative of j_1(s / stretch) has the factor 1 /
+    // stretch, which is part of force(). At a kink (9) allows an interval of
+    // tractions; the bundle methods ask for one element only, and the law takes
+    // the one on the side of 0.
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(s.size());
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       const double force = point.force() * law.derivative(stretch, reached);
@@ -125,6 +142,9 @@ namespace Debond
   Eigen::SparseMatrix<double>
   AdhesionIntegral<dim>::curvature(const VectorView &s) const
   {
+    // This is the E of the majorant 1/2 s'E s - b's of Phi: the law of each
+    // point is replaced by the flattest quadratic that touches it at s and is
+    // nowhere below it. It is never negative, so S + E stays definite if S is.
     return matrix(s, [this](const double stretch, const double reached) {
       return law.curvature(stretch, reached);
     });
@@ -136,6 +156,9 @@ namespace Debond
   Eigen::SparseMatrix<double>
   AdhesionIntegral<dim>::second_derivative(const VectorView &s) const
   {
+    // Where bonds soften this is less than curvature(), and S + Phi'' may be
+    // indefinite. That is what the search along lines and the test for a local
+    // minimum have to see.
     return matrix(s, [this](const double stretch, const double reached) {
       return law.second_derivative(stretch, reached);
     });
@@ -149,6 +172,10 @@ namespace Debond
                                       const VectorView &ds,
                                       const double      limit) const
   {
+    // Stretches are affine in s, so each point moves on a straight way to the
+    // end of its piece. Up to the first arrival Phi is one smooth function.
+    // Points without bonds have no kink. The offset is part of
+    // point.stretch(ds), but it does not move, so it is taken off again.
     double first = limit;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       if (point.bonds.energy > 0.)
@@ -171,6 +198,10 @@ namespace Debond
   {
     AssertDimension(delta.size(), n_nodes());
 
+    // The discrete form of (9): an equilibrium may use any traction that the
+    // law allows, at each point independently of the others, so that the
+    // interval of a node is the sum of theirs. Values of the shape functions
+    // are not negative, which keeps lower ends below upper ends.
     std::vector<Interval> forces(n_nodes(), Interval{0., 0.});
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       for (unsigned int k = 0; k < point.n_nodes; ++k)

@@ -10,6 +10,8 @@ namespace Debond
   double
   open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
+    // A point is open if it is lifted off and nothing can pull on it: its bonds
+    // are on the last piece, be it now or by their memory, or there are none.
     const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     double                 sum    = 0.;
     phi.for_each_point(s,
@@ -29,6 +31,10 @@ namespace Debond
   double
   dissipated_energy(const AdhesionIntegral<dim> &phi)
   {
+    // The value of the law at 0 is what is left in the bonds when they have
+    // been released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
+    // parabola. The stretch is not used, so that the sum depends neither on s
+    // nor on what is prescribed.
     double sum = 0.;
     phi.for_each_point(Eigen::VectorXd::Zero(phi.n_nodes()),
                        [&](const auto &point, double, double reached) {
@@ -49,6 +55,8 @@ namespace Debond
     if (!forces.empty())
       phi.for_each_point(
         s, [&](const auto &point, double stretch, double reached) {
+          // Entries from n_nodes on belong to held vertices, and their indices
+          // count these and not the nodes.
           for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
             forces[point.index[k]] +=
               point.shape[k] * point.force() *
@@ -66,6 +74,8 @@ namespace Debond
            const typename AdhesionIntegral<dim>::Barycentric &place,
            const VectorView                                  &s)
   {
+    // Displacement and bonds are known at any place, the memory only at the
+    // points of the rule. Therefore that of the nearest point is taken.
     const BondScale bonds = phi.points().bonds_at(face, place);
     return bonds.energy / bonds.stretch *
            phi.adhesive_law().derivative(phi.points().trace(face, place, s) /
@@ -81,6 +91,10 @@ namespace Debond
              const VectorView            &s,
              const double                 part)
   {
+    // No minimiser sits on the concave kink where the traction drops, so a
+    // state that seems to be there has been stopped by rounding or is another
+    // kind of stationary point. A kink above what bonds have reached is behind
+    // them for good and is left out.
     const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     bool                   is_at  = false;
     phi.for_each_point(s,
@@ -104,6 +118,9 @@ namespace Debond
                           const VectorView            &s,
                           const double                 part)
   {
+    // Rounding in s may put a bond on the wrong side of a kink. With the
+    // smaller of the second derivatives on both sides, a positive definite S +
+    // Phi'' proves a local minimum on whichever side the bond is.
     const AdhesiveLaw &law = phi.adhesive_law();
     return phi.matrix(s, [&](const double stretch, const double reached) {
       return std::min(law.second_derivative((1. + part) * stretch, reached),
@@ -117,6 +134,9 @@ namespace Debond
   Eigen::VectorXd
   lumped_weights(const AdhesionIntegral<dim> &phi)
   {
+    // Row sums of the matrix for a law with j_1'' = 1 move all of the stiffness
+    // to the diagonal. This is exact for nodal quadrature, and for an s that is
+    // the same at all nodes.
     const unsigned int n = phi.n_nodes();
     return phi.matrix(Eigen::VectorXd::Zero(n), [](const double, const double) {
       return 1.;

@@ -14,6 +14,9 @@ namespace Debond
                const dealii::Point<dim>             &point,
                const bool                            is_threshold)
     {
+      // An expression can only be checked where it is evaluated. Therefore each
+      // evaluation checks its value, and the error names the boundary and the
+      // place.
       const auto &field = is_threshold ? bonds.threshold : bonds.stiffness;
       if (!field)
         return everywhere;
@@ -41,6 +44,7 @@ namespace Debond
   BondField<dim>::at(const dealii::Point<dim>        &point,
                      const dealii::types::boundary_id id) const
   {
+    // A boundary without bonds of its own has those of all others.
     const auto   entry  = boundaries.find(id);
     const Bonds &bonds  = entry == boundaries.end() ? others : entry->second;
     const double a_here = bond_value<dim>(bonds, a, point, false);

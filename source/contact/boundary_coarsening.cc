@@ -57,6 +57,9 @@ namespace Debond
               entries.emplace_back(i, number[i], 1.);
               continue;
             }
+          // Weights are not negative and sum to one. So constants are kept, and
+          // from s <= 0 on the coarse nodes follows P s <= 0 on the fine ones:
+          // the coarse space needs no constraints but bounds.
           // A node that goes has a neighbour that is kept, as the set is
           // maximal. It is interpolated between these by the inverse of their
           // distances: in 2D linearly.
@@ -86,6 +89,10 @@ namespace Debond
                  const std::vector<unsigned int> &number,
                  const unsigned int               n_kept)
     {
+      // On a line, where every second node goes, all that is between two kept
+      // nodes is one node, and the coarse graph is a line again. In 3D kept
+      // nodes may be further apart; they are then no neighbours, and the
+      // coarsening ends earlier.
       NodeGraph<dim> coarse;
       coarse.neighbours.resize(n_kept);
       for (unsigned int i = 0; i < number.size(); ++i)
@@ -111,6 +118,9 @@ namespace Debond
     NodeGraph<dim>                           graph = {{}, neighbours(boundary)};
     for (const auto &node : boundary.nodes)
       graph.positions.push_back(node.position);
+    // On a line each level halves the number of nodes, so that there are about
+    // as many levels as its binary logarithm, and all prolongations together
+    // have a few entries a node.
     while (graph.positions.size() > coarsest)
       {
         // The set of each level is one on the graph of the level before, so

@@ -74,8 +74,15 @@ namespace Debond
         return {energy / measure, std::sqrt(energy / stiffness)};
       }
     };
+    // Where boundaries with different bonds meet, a vertex has the bonds of
+    // each of them. Nodal quadrature needs one law there. The mean stiffness a
+    // = energy / stretch^2 and the mean energy keep what the bonds are as
+    // springs and what it takes to break them; the threshold follows from these
+    // two.
     std::vector<Sum> nodes(contact.nodes.size());
     std::vector<Sum> held(contact.held_vertices.size());
+    // The field is asked with the boundary of each face, as at such a vertex it
+    // has a value for each of them.
     for (const Face &face : contact.faces)
       for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
         if (!face.is_held(k))
@@ -103,11 +110,17 @@ namespace Debond
   void
   ContactPoints<dim>::collect_points()
   {
+    // With nodal quadrature the faces around a node add their weights to one
+    // point. Phi then is a sum of functions of one component of s each, on
+    // which search and proof rely, and E is diagonal. As several points of
+    // faces become one, `places` keeps where each of them went.
     places.clear();
     points.assign(is_nodal() ? contact.nodes.size() : 0, ContactPoint<dim>());
     for (const Face &face : contact.faces)
       for (const auto &in_rule : quadrature.points())
         {
+          // A coefficient whose shape function is zero at the point is left
+          // out, so that a point on a vertex depends on this vertex alone.
           const Trace shape = bernstein(in_rule.barycentric, contact.degree);
           ContactPoint<dim> point;
           point.weight   = in_rule.weight * face.measure;
@@ -140,6 +153,9 @@ namespace Debond
               places.push_back(point.index[0]);
               continue;
             }
+          // A point on a held vertex depends on no unknown, and its first entry
+          // is that vertex. It stays one point a face: their energies and
+          // forces add up anyway.
           if (is_nodal() && !bonds_of_held.empty())
             point.bonds = bonds_of_held[point.index[0]];
           places.push_back(static_cast<unsigned int>(points.size()));
@@ -194,6 +210,8 @@ namespace Debond
   {
     if (contact.held_vertices.empty())
       return 0.;
+    // In terms of the lifting this is u_nu - g. Prescribed displacements grow
+    // with the factor of the load, the gap does not.
     const auto &held = contact.held_vertices[face.held_at(k)];
     return load_factor * held.normal_displacement - held.gap;
   }

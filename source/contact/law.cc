@@ -100,6 +100,10 @@ namespace Debond
   {
     if (s > 0. && reached == 0.)
       return {0., 0.};
+    // Away from kinks this is one point. At a kink it is (9), all that is
+    // between the derivatives of both pieces. At s = 0 the other side is (10)
+    // above 0, which is zero; bonds with a memory are springs there, without a
+    // kink.
     const PiecewiseEnergy::Piece piece = minimum.piece_at(s, reached);
     const double                 force = piece.derivative(s);
     // The other side, if s is a kink.
@@ -134,6 +138,8 @@ namespace Debond
     for (const double kink : kinks())
       if (std::abs(kink - s) <= delta)
         extend(kink);
+    // Where the memory ends the derivative is continuous, but it need not be
+    // monotone: below it the law goes on, above it is the secant.
     if (reached < 0. && std::abs(reached - s) <= delta)
       extend(reached);
     return hull;
@@ -150,6 +156,8 @@ namespace Debond
     const double pull = minimum.piece_at(reached, 0.).derivative(reached);
     if (!(reached < 0.) || first.is_flat())
       return 0.;
+    // A curve may also become stiffer before it drops, which is no negative
+    // damage.
     const double lost = first.slope == 0. ?
                           1. - pull / (first.curvature * reached) :
                           1. - pull / first.slope;
@@ -196,6 +204,8 @@ namespace Debond
   {
     // Tractions rise to the kinks, as the pieces are monotone between them.
     double strength = 0.;
+    // The derivative is minus the traction, and its lower end is the traction
+    // before the drop.
     for (const double kink : kinks())
       strength = std::max(strength, -clarke_interval(kink).lower);
     return strength;
@@ -205,7 +215,7 @@ namespace Debond
 
   namespace
   {
-    /// Of a list with commas.
+    /// Returns the parts of a list with commas.
     std::set<std::string>
     names_in(const std::string &list)
     {
@@ -221,6 +231,7 @@ namespace Debond
     const std::vector<LawKind> &
     kinds()
     {
+      // The first is the law of a scene that names none.
       static const std::vector<LawKind> all = {winkler_kind(),
                                                bilinear_kind(),
                                                exponential_kind(),

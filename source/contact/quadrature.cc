@@ -86,6 +86,9 @@ namespace Debond
       std::vector<QuadraturePoint> points;
       switch (parameters.rule)
         {
+          // Each vertex has the integral of its hat function, so that linear
+          // functions are integrated exactly. In 2D this is the trapezoidal
+          // rule.
           case Rule::nodal:
             points.resize(dim);
             for (unsigned int k = 0; k < dim; ++k)
@@ -95,6 +98,8 @@ namespace Debond
                 points[k].barycentric[k] = 1.;
               }
             break;
+          // One point a face, as exact as the vertices for linear functions,
+          // but it couples the nodes of the face.
           case Rule::midpoint:
             points.resize(1);
             points[0].weight = 1.;
