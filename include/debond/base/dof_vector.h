@@ -14,7 +14,7 @@ namespace Debond
   /// An entry for each degree of freedom: displacements u, loads f, residuals;
   /// and what bundle methods minimise over. All ranks have all entries, and the
   /// same ones.
-  /// What has an entry for each contact node is an Eigen vector.
+  /// Vectors with an entry for each contact node are Eigen vectors.
   using DofVector = dealii::Vector<double>;
 
 

@@ -118,7 +118,7 @@ namespace Debond
       return n_coefficients(dim, degree);
     }
 
-    /// What s must not exceed at the nodes: the body does not enter the
+    /// Returns the upper bounds of s at the nodes: the body does not enter the
     /// foundation.
     Eigen::VectorXd
     upper_bounds() const

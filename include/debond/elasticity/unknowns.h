@@ -186,7 +186,7 @@ namespace Debond
       return free_motions;
     }
 
-    /// Whether the supports alone hold the body, so that A is definite.
+    /// Returns whether the supports alone hold the body, so that A is definite.
     bool
     is_held_by_supports() const
     {

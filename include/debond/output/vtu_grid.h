@@ -63,8 +63,8 @@ namespace Debond
 
 
 
-  /// The same grid gives the same file: the numbers stand behind the
-  /// description ("appended raw" data), compressed by zlib.
+  /// Writes the numbers behind the description ("appended raw" data),
+  /// compressed by zlib. Equal grids give equal files.
   void
   write_vtu(const VtuGrid &grid, std::ostream &out);
 

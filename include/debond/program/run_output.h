@@ -43,8 +43,8 @@ namespace Debond
     begin_path(const Scene<dim>                     &scene,
                const std::vector<LoadPathStep<dim>> &done = {});
 
-    /// The same for a mesh that is to be refined: the files of the steps before
-    /// are of another mesh.
+    /// The next steps are on a mesh that is to be refined: the files of the
+    /// steps before are of another mesh.
     void
     begin_mesh(const Scene<dim> &scene);
 

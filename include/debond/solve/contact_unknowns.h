@@ -33,7 +33,7 @@ namespace Debond
       return static_cast<unsigned int>(normals.size());
     }
 
-    /// What s must not exceed.
+    /// Returns the upper bounds of s.
     const Eigen::VectorXd &
     upper() const
     {

@@ -78,7 +78,8 @@ namespace Debond
     double largest_force  = 0.; ///< what residuals are relative to
     double force_rounding = 0.; ///< what rounding leaves in A u
 
-    /// Of Phi: that of J is 1/2 <A v, v> - <f, v> + 1/2 s'E s - b's + const.
+    /// The majorant of Phi: that of J is 1/2 <A v, v> - <f, v> + 1/2 s'E s -
+    /// b's + const.
     Majorant  majorant;
     ActiveSet active;
 

@@ -39,7 +39,7 @@ namespace Debond
     PathProgress<dim>              progress;
     std::vector<LoadPathStep<dim>> arc;
 
-    /// As they are after the last step, with references to the scene; null if
+    /// The bonds after the last step, with references to the scene; null if
     /// there is none.
     std::shared_ptr<const AdhesionIntegral<dim>> bonds;
   };

@@ -23,10 +23,11 @@ namespace Debond
     LoadPathState<dim> state;
     unsigned int       iterations; ///< of majorise-minimise
 
-    /// Where on the way from the last factor the first bond broke or closed,
-    /// if one did: on straight pieces of the way displacements are linear in
-    /// the factor. That of prescribed displacements if the loads' factor stayed
-    /// the same. Known with nodal quadrature, but for the first step.
+    /// The factor at which, on the way from the last one, the first bond broke
+    /// or closed, if one did: on straight pieces of the way displacements are
+    /// linear in the factor. It is the factor of prescribed displacements if
+    /// that of the loads stayed the same. It is known with nodal quadrature,
+    /// but for the first step.
     std::optional<double> change_factor;
 
     /// The global branch at this factor, if it was computed.
@@ -39,7 +40,7 @@ namespace Debond
       return {factor, displacement_factor};
     }
 
-    /// Of the first thing that went wrong, empty if nothing did.
+    /// The message of the first thing that went wrong, empty if nothing did.
     std::string message;
   };
 

@@ -129,7 +129,8 @@ namespace Debond
       return *adhesion_integral;
     }
 
-    /// What the error is estimated of, with bonds that a load path has left.
+    /// Returns the problem whose error is estimated, with bonds that a load
+    /// path has left.
     EstimatedProblem<dim>
     estimated(const AdhesionIntegral<dim> &bonds) const
     {

@@ -51,7 +51,7 @@ namespace Debond
     /// With J in place of the condensed functional; of Solver/Prove only.
     std::vector<ProofProgress> proof_history;
 
-    /// What limits of work have left undone.
+    /// Sentences about work that its limits have left undone.
     std::vector<std::string> notes;
   };
 

@@ -44,6 +44,8 @@ namespace Debond
       for (std::size_t k = 0; k < curve.size(); ++k)
         {
           const auto [opening, traction] = curve[k];
+          // Stiffnesses and energies are quotients and products of these
+          // numbers, which neither overflow nor underflow in this range.
           for (const double number : {opening, traction})
             require_curve(number == 0. || (std::abs(number) >= 1e-100 &&
                                            std::abs(number) <= 1e100),
@@ -55,6 +57,8 @@ namespace Debond
                               opening));
           if (k == 0)
             continue;
+          // A traction that jumped up would be a convex kink of j_1: there is
+          // no quadratic that touches it from above, as a majorant has to.
           // An opening twice is a drop, which is allowed; what falls is not a
           // function.
           require_curve(opening >= curve[k - 1].first,
@@ -92,6 +96,8 @@ namespace Debond
       std::string   line;
       for (unsigned int number = 1; std::getline(file, line); ++number)
         {
+          // Commas and semicolons separate columns, as in exported tables; the
+          // carriage return is what other systems end lines with.
           std::replace_if(
             line.begin(),
             line.end(),
@@ -105,6 +111,8 @@ namespace Debond
           if (parts.size() == 2 && read_number(parts[0], opening) &&
               read_number(parts[1], traction))
             curve.emplace_back(opening, traction);
+          // Only the first line may be a title. Any later line that is not
+          // understood is an error, so that no point is lost in silence.
           else if (!parts.empty() && number > 1)
             throw std::invalid_argument("line " + std::to_string(number) +
                                         " is not an opening and a traction");
@@ -117,7 +125,7 @@ namespace Debond
 
 
 
-    /// Behind the point from which on there are none but zeros.
+    /// Returns the index behind the point from which on all tractions are zero.
     std::size_t
     end_of_tractions(const TractionCurve &curve)
     {
@@ -131,7 +139,7 @@ namespace Debond
 
 
 
-    /// "0:0, 0.01:1.5".
+    /// Reads a list such as "0:0, 0.01:1.5".
     TractionCurve
     curve_of(const std::string &text)
     {
@@ -175,7 +183,12 @@ namespace Debond
             n_drops += t != last;
             continue;
           }
+        // The traction on this part is at_zero + rise p with the opening p =
+        // -s. So j_1'(s) = rise s - at_zero, with the curvature and the slope
+        // that a piece is described by.
         double rise = (last - t) / (next - p), at_zero = t - rise * p;
+        // Bonds return along a piece if its slope is exactly zero; a remainder
+        // of rounding would make them return along a secant instead.
         // A spring through 0, whatever rounding makes of it.
         if (std::abs(at_zero) <= Tolerance::rounding_of_data * strength)
           {
@@ -197,6 +210,8 @@ namespace Debond
                        "partly broken (" + std::to_string(n_drops) + ")" :
                        "softening"});
       }
+    // What holds from the last point on: a traction of zero, or a constant one,
+    // whose bonds never break and whose fracture energy is infinite.
     const double last = curve[end - 1].second;
     law.pieces.push_back(
       {0., -last, no_end, last == 0. ? "broken" : "holding"});

@@ -63,6 +63,9 @@ namespace Debond
         const std::string for_winkler =
           "is for Law = winkler: bonds that soften are the same everywhere but "
           "for the Traction factor";
+        // The bonds of Law = winkler vary by stiffness and threshold, which
+        // scale one law. Three numbers that vary would change its shape from
+        // point to point, so only a factor of the tractions may vary here.
         // Entries for one boundary have its name behind that of the entry.
         for (const auto &[path, unused] : table.locations())
           for (const std::string &entry :
@@ -114,6 +117,8 @@ namespace Debond
   bilinear_law(const SofteningBonds &bonds)
   {
     check(bonds);
+    // The energy is the area of the triangle below the three points, strength
+    // times the last opening divided by two.
     // What is brittle but for rounding breaks at once.
     const double         first = bonds.strength / bonds.stiffness;
     const double         last  = 2. * bonds.energy / bonds.strength;
@@ -134,6 +139,9 @@ namespace Debond
   exponential_law(const SofteningBonds &bonds)
   {
     check(bonds);
+    // The spring has stored this much when it reaches the strength. The rest of
+    // the energy belongs to the falling part, whose area has to be what
+    // remains.
     const double stored =
       bonds.strength * bonds.strength / (2. * bonds.stiffness);
     return {"exponential",

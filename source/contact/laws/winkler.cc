@@ -42,6 +42,8 @@ namespace Debond
     require_in_range(a >= 0., "Bond stiffness", a, ">= 0");
     require_in_range(M > 0., "Bond threshold", M, "> 0");
 
+    // These are the pieces of (10) from s = 0 downwards. Without stiffness
+    // there is nothing to break and M has no meaning, so both pieces are one.
     const std::string data = words("a = ", a, ", M = ", M);
     if (a == 0.)
       return {"winkler", {{0., 0., no_end, "free"}}, data};
@@ -69,6 +71,9 @@ namespace Debond
       std::string  a, M;
     };
 
+    // All follow from the strength t = a M and the energy G = a M^2 / 2: so G /
+    // t = M / 2 and t^2 / G = 2 a. Stiffness and threshold together need no
+    // formula.
     const std::array<Formula, 5> formulas = {{{2, 3, "P^2/(2*Q)", "2*Q/P"},
                                               {3, 0, "", "sqrt(2*P/Q)"},
                                               {2, 0, "", "P/Q"},
@@ -114,6 +119,8 @@ namespace Debond
         result += c == 'P' ? '(' + p + ')' :
                   c == 'Q' ? '(' + q + ')' :
                              std::string(1, c);
+      // Two numbers give a number, so that bonds that are the same everywhere
+      // are not taken for a field.
       double number;
       if (!read_number(p, number) || !read_number(q, number))
         return result;
@@ -129,6 +136,8 @@ namespace Debond
     void
     complete(const std::string &suffix, Texts &bonds, ParameterTable &table)
     {
+      // Neither strength nor energy: a and M are all there is, and both have
+      // defaults, unless an entry has been emptied on purpose.
       if (bonds[2].empty() && bonds[3].empty())
         {
           const std::string &missing = paths[bonds[0].empty() ? 0 : 1];
@@ -139,6 +148,8 @@ namespace Debond
                          "these, Bond strength and Fracture energy");
           return;
         }
+      // Only what the scene sets counts as given: a default for a or M must not
+      // contradict a strength or an energy.
       Texts    given = bonds;
       Texts    all   = paths;
       unsigned n     = 0;
@@ -184,6 +195,8 @@ namespace Debond
           }
       bonds = given;
       // The effective scene has one pair only.
+      // It says a and M, which stand for any of the pairs, and the others are
+      // emptied, so that reading it again gives the same bonds.
       table.derive(all[0], bonds[0], source);
       table.derive(all[1], bonds[1], source);
       for (const std::string &path : {all[2], all[3]})
@@ -205,6 +218,9 @@ namespace Debond
       std::map<std::string, ContactLawParameters::Bonds> result;
       for (auto &[name, bonds] : texts)
         {
+          // A boundary with one of a and M has the other one from everywhere. A
+          // strength or an energy of its own needs a second entry for the same
+          // boundary, which complete() insists on.
           for (const unsigned int k : {0, 1})
             if (bonds[k].empty() && bonds[2].empty() && bonds[3].empty())
               bonds[k] = entries.everywhere[k];
@@ -224,6 +240,10 @@ namespace Debond
       std::string ContactLawParameters::Bonds::*const           text,
       const std::map<std::string, ContactLawParameters::Bonds> &boundaries)
     {
+      // Fields scale one law, whose own numbers are arbitrary as long as they
+      // are positive. With a number of the scene the scales are exactly 1 where
+      // bonds have that number, and the law's data are those that a user
+      // expects.
       double value;
       if (read_number(everywhere, value) && value > 0.)
         return value;
@@ -242,6 +262,8 @@ namespace Debond
       double     a = 1., M = 1.;
       const bool a_is_number = read_number(everywhere[0], a);
       const bool M_is_number = read_number(everywhere[1], M);
+      // Bonds that are the same everywhere are the law itself and need no
+      // field.
       if (boundaries.empty() && a_is_number && (M_is_number || a == 0.))
         return winkler_law(a, M);
 
@@ -250,6 +272,9 @@ namespace Debond
         reference_value(everywhere[0], &Bonds::stiffness, boundaries),
         reference_value(everywhere[1], &Bonds::threshold, boundaries));
       law.data = "a = " + everywhere[0] + ", M = " + everywhere[1];
+      // A stiffness of zero that only holds outside some boundaries is a field,
+      // too: a law without stiffness could not be scaled to that of the
+      // boundaries.
       if (!a_is_number || a == 0.)
         law.stiffness = everywhere[0];
       if (!M_is_number)

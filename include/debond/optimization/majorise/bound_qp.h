@@ -40,7 +40,7 @@ namespace Debond
            const double           mu_noise,
            ActiveSet             &active);
 
-    /// Whether the number of wrong indices has not fallen for long.
+    /// Returns whether the number of wrong indices has not fallen for long.
     bool
     wanders() const;
 
