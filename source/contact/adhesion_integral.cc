@@ -24,6 +24,7 @@ namespace Debond
   AdhesionIntegral<dim>
   AdhesionIntegral<dim>::at(const double factor) const
   {
+    // Only the offsets of the points depend on the factor.
     // The memory stays: the points are the same at each factor.
     AdhesionIntegral result(*this);
     result.contact_points.set_factor(factor);
@@ -53,6 +54,8 @@ namespace Debond
   void
   AdhesionIntegral<dim>::set_memory(const BondMemory &memory)
   {
+    // The sums at s = 0 contain what bonds have dissipated, so they follow the
+    // memory.
     broken = memory;
     update();
   }

@@ -222,6 +222,8 @@ namespace Debond
   typename ContactPoints<dim>::Trace
   ContactPoints<dim>::trace_on(const Face &face, const VectorView &s) const
   {
+    // Together unknown and prescribed coefficients are the whole trace w_nu of
+    // the face, which tests on places between the nodes need.
     Trace trace = {};
     for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
       trace[k] = face.is_held(k) ? held_trace(face, k) : s(face.node(k));

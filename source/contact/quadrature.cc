@@ -65,6 +65,8 @@ namespace Debond
 
       // Unlike QGaussSimplex, these rules do not depend on the numbering of
       // the vertices, so that a symmetric problem stays symmetric.
+      // Their weights are positive, without which a sum of majorants would be
+      // no majorant of Phi.
       return dealii::QWitherdenVincentSimplex<dim - 1>(n);
     }
 

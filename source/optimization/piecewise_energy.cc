@@ -279,6 +279,8 @@ namespace Debond
   double
   PiecewiseEnergy::needed_convexity(const double s) const
   {
+    // With less than its own concavity the piece itself would be below its
+    // tangent at s.
     const Piece own       = piece_at(s, 0.);
     double      convexity = std::max(0., -own.curvature);
     for (const Piece &other : pieces)
@@ -297,7 +299,9 @@ namespace Debond
   {
     if (piece + 1 >= pieces.size())
       return false;
-    const double s    = pieces[piece].lower;
+    const double s = pieces[piece].lower;
+    // Tractions of both pieces are quotients of what a scene gives, and differ
+    // by rounding where the curve is continuous.
     const double pull = -pieces[piece].derivative(s);
     return pull + pieces[piece + 1].derivative(s) >
            Tolerance::rounding_of_data * pull;
@@ -310,6 +314,10 @@ namespace Debond
   {
     if (energy == 0.)
       return PiecewiseEnergy::zero();
+    // Curvatures scale by energy / stretch^2 and slopes by energy / stretch;
+    // whether a piece is above the others does not change. The constants are
+    // made anew, as the function has to be continuous at kinks that have been
+    // rounded.
     PiecewiseEnergy result;
     result.pieces = pieces;
     for (Piece &piece : result.pieces)

@@ -18,6 +18,8 @@ namespace Debond
   double
   Functional::value(const DofVector &v) const
   {
+    // This is the functional of Problem M_{V_n} of the paper less the constant
+    // Phi(0), which no comparison of two values needs.
     DofVector A_v(v);
     multiply(A_v, v);
     return 0.5 * (A_v * v) - f * v + phi.change(trace(v));
@@ -28,6 +30,8 @@ namespace Debond
   void
   Functional::subgradient(const DofVector &v, DofVector &eta) const
   {
+    // All but Phi is differentiable, so that the gradient of the rest and any
+    // element of the subdifferential of Phi make an element of that of J.
     multiply(eta, v);
     eta -= f;
     add_phi(trace(v), eta);
@@ -66,6 +70,9 @@ namespace Debond
     , s_d(functional.trace(d))
     , phi_at_x(functional.phi.change(s))
   {
+    // The two products with A are all that a line search costs: each trial t
+    // then needs the contact nodes only, and a subgradient the sum of two
+    // vectors.
     gradient->reinit(x, true);
     functional.multiply(*gradient, x);
     *gradient -= functional.f;
@@ -82,6 +89,9 @@ namespace Debond
   double
   Functional::Line::change(const double t) const
   {
+    // Near the minimum the descent is far below the last digit of J, so that a
+    // difference of two values of J would be nothing but rounding, and (14)
+    // could not be tested.
     return t * (slope + 0.5 * t * curvature) +
            (functional.phi.change(s + t * s_d) - phi_at_x);
   }

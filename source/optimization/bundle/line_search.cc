@@ -65,7 +65,9 @@ namespace Debond
 
       if (parameters.line_search == DescentRule::minimum)
         {
-          // The parabola through t = 0, t and 2 t.
+          // The parabola slope t + curvature / 2 t^2 through t = 0, t and 2 t
+          // is the change of J itself as long as no bond changes its piece
+          // (and the pieces are parabolas).
           const double curvature = (change_at_twice_t - 2. * change) / (t * t);
           const double slope     = (4. * change - change_at_twice_t) / (2. * t);
           if (curvature > 0. && slope < 0.)
@@ -121,8 +123,10 @@ namespace Debond
       result.slope          = eta * d;
       const double t_beyond = t_R - result.t_L;
       const double distance = t_beyond * d_norm;
-      result.alpha          = result.change - change + t_beyond * result.slope;
-      result.beta           = std::max(std::abs(result.alpha),
+      // The linearisation error of y_{k+1} as alpha_j^k is defined in the
+      // paper, with differences from J(x_k) in place of both values of J.
+      result.alpha = result.change - change + t_beyond * result.slope;
+      result.beta  = std::max(std::abs(result.alpha),
                              parameters.gamma * distance * distance);
     };
 

@@ -35,7 +35,9 @@ namespace Debond
   MetricDirection::solve(const DofVector &x, const Eigen::VectorXd &beta)
   {
     const unsigned int n = x.size();
-    Eigen::MatrixXd    M = S;
+    // Unless bonds soften, M is the second derivative of J as long as they stay
+    // on their pieces, and the step with one subgradient is Newton's.
+    Eigen::MatrixXd M = S;
     M += phi.curvature(eigen_view(x));
     const Eigen::VectorXd b = upper - eigen_view(x);
     const auto            G = eta.leftCols(m);
@@ -54,6 +56,9 @@ namespace Debond
     while (!settled && solution.steps < maximum_active_set_steps)
       {
         ++solution.steps;
+        // Active components are at their bounds, the others follow from them.
+        // Each guess of the active set costs a factorisation of M_ff; the first
+        // guess is that of the last call, which is rarely far off.
         std::vector<int> free;
         d = b;
         for (unsigned int i = 0; i < n; ++i)
@@ -93,7 +98,9 @@ namespace Debond
         for (const int i : free)
           mu(i) = 0.;
         const double largest_force = n > 0 ? force_terms.maxCoeff() : 0.;
-        settled                    = rule.update(d - b,
+        // Signs count beyond rounding only: an unknown at its bound without a
+        // force on it would otherwise go in and out for ever.
+        settled = rule.update(d - b,
                               mu,
                               Tolerance::active_set *
                                 (n > 0 ? d.lpNorm<Eigen::Infinity>() : 0.),
@@ -141,6 +148,9 @@ namespace Debond
   double
   MetricDirection::length(const DofVector &direction) const
   {
+    // This is the norm of the energy of the body. The curvature of the pieces
+    // changes from one iteration to the next and is left out, so that the
+    // lengths of different steps can be added up.
     const auto v = eigen_view(direction);
     return std::sqrt(v.dot(S * v));
   }
@@ -150,6 +160,7 @@ namespace Debond
   void
   MetricDirection::project(DofVector &x) const
   {
+    // A step to a bound ends beside it by the last digit.
     for (unsigned int i = 0; i < x.size(); ++i)
       x(i) = std::min(x(i), upper(i));
   }

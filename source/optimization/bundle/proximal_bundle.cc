@@ -101,6 +101,8 @@ namespace Debond
       void
       direction(DofVector &d) const override
       {
+        // Off the bounds the QP is stationary where u d and the sum of lambda_j
+        // eta_j cancel.
         d = 0.;
         // Two at a time, to read and write d half as often.
         std::vector<unsigned int> active;
@@ -240,8 +242,8 @@ namespace Debond
 
 
 
-    /// Whether inner products with a subgradient, which the QP is made of, are
-    /// finite numbers.
+    /// Returns whether inner products with a subgradient, which the QP is made
+    /// of, are finite numbers.
     bool
     is_usable(const DofVector &eta)
     {
@@ -362,6 +364,8 @@ namespace Debond
     // x_1 = y_1, and again from x_k once the bundle is full: the subgradient
     // there is all that is known.
     const auto restart = [&]() {
+      // The paper does the same every 200 steps (Section 6); here the bundle
+      // size says when.
       bundle.clear();
       result.functional = functional.value(x);
       functional.subgradient(x, eta);
@@ -447,9 +451,12 @@ namespace Debond
             {
               x.add(step.t_L, d);
               direction_problem.project(x);
+              // J is carried on by its changes, as its value would cost another
+              // product with A; restart() and finish() evaluate it anew.
               result.functional += step.change;
               bundle.move(direction, step, d_length);
             }
+          // The first term of s_j^k is the way from y_{k+1} back to x_{k+1}.
           if (bundle.full())
             restart();
           else if (is_usable(eta))

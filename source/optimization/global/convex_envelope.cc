@@ -114,6 +114,7 @@ namespace Debond
           const long double a    = (at_to - at_from) - b;
           const long double root =
             std::sqrt(std::max(0.L, a * a - 4.L * b * at_from));
+          // This form of the root has no difference of nearly equal numbers.
           const long double sum = a + std::copysign(root, a);
           m = from + width * (sum == 0.L ? 0.L : -2.L * at_from / sum);
         }
@@ -158,9 +159,13 @@ namespace Debond
                             std::min(std::max(-slope / c, left), right) :
                           is_left_lower ? left :
                                           right;
+    // What falls towards minus infinity has no least value, and the bound is
+    // useless but true.
     if (!std::isfinite(s))
       return -Limits::infinity();
     const long double square = 0.5L * c * s * s;
+    // The value is a bound only if rounding cannot have raised it: each term is
+    // off by a few units of its last digit, whatever their sum is.
     return slope * s + square + p.constant -
            16.L * Limits::epsilon() *
              (std::abs(p.constant) + std::abs(square) +
@@ -222,6 +227,8 @@ namespace Debond
       {
         const double from = std::max(lower, piece->lower),
                      to   = std::min(upper, piece->upper);
+        // A piece that meets the interval in one point has it in common with
+        // its neighbour, which stands for it.
         if (from > to || (from == to && upper > lower))
           continue;
         const Parabola parabola(*piece, f.convexity);

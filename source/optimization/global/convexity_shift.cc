@@ -65,6 +65,9 @@ namespace Debond
     const Eigen::VectorXd root   = weights.cwiseSqrt();
     Eigen::VectorXd       v      = root;
     double                lambda = 0.;
+    // Few iterations will do: they approach the largest eigenvalue from below,
+    // so that the multiple is rather too large than too small, and what is
+    // taken of it has to be checked by a factorisation anyway.
     for (unsigned int k = 0; k < power_iterations && v.norm() > 0.; ++k)
       {
         v.normalize();
@@ -95,6 +98,11 @@ namespace Debond
         // The derivative v_i - mu (A - D)^{-1}_ii is zero there, as (A -
         // D)^{-1}_ii changes with D_i alone like P_kk / (1 - step P_kk).
         const double best = v(i) > 0. ? 1. / P(k, k) - mu / v(i) : -D(i);
+        // D_i stays at least zero. As `best` is at most 1 / P_kk, a step of
+        // this share leaves 1 - step P_kk >= 0.3, so that A - D stays away from
+        // singular matrices and the update below loses no digits. Where s_i is
+        // on no line of its envelope, D_i does not raise the bound, and what it
+        // takes from A is given back to the others.
         const double step = step_share * std::max(best, -D(i));
         if (std::abs(step) * P(k, k) < Tolerance::shift_step)
           continue;

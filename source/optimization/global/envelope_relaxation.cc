@@ -97,6 +97,10 @@ namespace Debond
                       const std::vector<ConvexEnvelope> &envelopes,
                       Eigen::VectorXd                   &s)
   {
+    // Newton's method for a convex function of parabolas and lines: as long as
+    // the unknowns stay on their parts of the envelopes it is quadratic, and
+    // one linear system gives the minimum. Nothing depends on it being reached,
+    // as every point gives a bound.
     s = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
     std::vector<int> places, old_places;
     for (unsigned int step = 0; step < maximum_newton_steps; ++step)
@@ -126,7 +130,11 @@ namespace Debond
     , least(x.size())
   {
     // Sums of n terms lose at most n units of their absolute sum.
-    const unsigned int    n       = static_cast<unsigned int>(x.size());
+    const unsigned int n = static_cast<unsigned int>(x.size());
+    // The bound is J(s) of the theory page with its first term, which is not
+    // negative, left out. It has to be true in spite of rounding, so each sum
+    // is taken in extended precision, with the sum of the sizes of its terms
+    // beside it.
     constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
     long double           sum = 0., size = 0.;
     for (unsigned int i = 0; i < n; ++i)
@@ -167,7 +175,9 @@ namespace Debond
     const PiecewiseEnergy::Piece &p = problem.f[i].pieces[piece];
     const double                  quadratic =
       1. / ((1. + Tolerance::outwards) * inverse_diagonal);
-    // 1/2 (s - x)'A (s - x) with all components but s_i where it is least.
+    // With all components but s_i where it is least, 1/2 (s - x)'A (s - x) is
+    // 1/2 (s_i - x_i)^2 / (A^-1)_ii. The diagonal of the inverse is rounded up
+    // first, so that rounding makes the growth smaller and not larger.
     const double c        = problem.f[i].convexity + p.curvature;
     const double r_i      = static_cast<double>(r[i]);
     const double least_i  = static_cast<double>(least[i]);

@@ -91,6 +91,8 @@ namespace Debond
       NodeSet              all;
       while (!layer.empty() && result.size() < n)
         {
+          // Each set contains the ones before, so that an edge moves as a whole
+          // by 1, 2, ... nodes.
           all.insert(layer.begin(), layer.end());
           result.push_back(all);
           layer = common(neighbours_of(all, graph), others);
@@ -105,6 +107,8 @@ namespace Debond
     growing(const std::vector<unsigned int> &nodes, const NodeSet &others)
     {
       std::vector<NodeSet> result;
+      // Each set moves twice as many nodes as the last one, as every number of
+      // nodes that is tried costs a minimisation.
       for (std::size_t n = 1; n < nodes.size(); n *= 2)
         {
           result.push_back(others);
@@ -148,6 +152,9 @@ namespace Debond
                    layers(inner, patch, maximum_shift, graph))
                 moves.push_back({piece, {}, nodes});
             }
+        // Moves of edges change the size of patches. Flips change their number:
+        // a whole patch breaks or heals, or a new one begins in the middle of
+        // another.
         if (!flips)
           continue;
         for (const NodeSet &patch : upper)

@@ -19,6 +19,8 @@ namespace Debond
   double
   SeparableEnergy::change(const VectorView &s) const
   {
+    // With nodal quadrature Phi is a sum of functions of one component each, so
+    // that pieces, derivatives and bounds are those of single bonds.
     double sum = 0.;
     for (unsigned int i = 0; i < s.size(); ++i)
       sum += piece(i, s).value(s(i));

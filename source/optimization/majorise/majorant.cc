@@ -17,6 +17,7 @@ namespace Debond
     const auto norm = [](const Eigen::SparseMatrix<double> &matrix) {
       return matrix.size() == 0 ? 0. : matrix.norm();
     };
+    // The gradient E s - b of 1/2 s'E s - b's has to be xi at s.
     const Eigen::VectorXd E_s   = curvature * s;
     const Eigen::VectorXd new_b = E_s - xi;
     // Both terms of b are as large as E s, and cancel where the piece of the

@@ -70,7 +70,9 @@ namespace Debond
                         left() + " Try more iterations.");
 
         // Majorise. As long as the majorant changes it needs no exact minimum.
-        // What this iteration is compared with.
+        // If it is the one before, x is its minimum but for what the last
+        // minimisation has left, and only that has to become less. The state
+        // before is what this iteration is compared with.
         const MajorantProblem::State before = state;
         const bool                   is_new = problem.majorise();
         const double                 tolerance =
@@ -80,7 +82,8 @@ namespace Debond
                    0.5 * tolerance;
 
         // Minimise, and better if J has risen, as it may where a minimum of the
-        // majorant is not exact.
+        // majorant is not exact. A rise counts only beyond the rounding of both
+        // values, as the last steps change J by less than that.
         const auto has_risen = [&]() {
           return state.functional > before.functional +
                                       before.functional_rounding +
@@ -89,6 +92,9 @@ namespace Debond
         MajoriseMinimiseIteration iteration = {};
         iteration.iteration =
           static_cast<unsigned int>(result.history.size()) + 1;
+        // Each repetition asks for a tenth of the residual. It goes on to a
+        // hundredth of what is required, below which rounding makes the
+        // difference.
         do
           {
             const MajorantProblem::Minimisation inner =
