@@ -24,8 +24,8 @@ namespace Debond
   AdhesionIntegral<dim>
   AdhesionIntegral<dim>::at(const double factor) const
   {
-    // Only the offsets of the points depend on the factor.
-    // The memory stays: the points are the same at each factor.
+    // Only the offsets of the points depend on the factor. The memory stays, as
+    // the points are the same at each factor.
     AdhesionIntegral result(*this);
     result.contact_points.set_factor(factor);
     result.update();

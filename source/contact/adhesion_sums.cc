@@ -31,8 +31,8 @@ namespace Debond
   double
   dissipated_energy(const AdhesionIntegral<dim> &phi)
   {
-    // The value of the law at 0 is what is left in the bonds when they have
-    // been released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
+    // The value of the law at 0 is what does not come back when bonds are
+    // released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
     // parabola. The stretch is not used, so that the sum depends neither on s
     // nor on what is prescribed.
     double sum = 0.;
@@ -91,10 +91,10 @@ namespace Debond
              const VectorView            &s,
              const double                 part)
   {
-    // No minimiser sits on the concave kink where the traction drops, so a
-    // state that seems to be there has been stopped by rounding or is another
-    // kind of stationary point. A kink above what bonds have reached is behind
-    // them for good and is left out.
+    // No minimiser sits on the concave kink where the traction drops, and so
+    // close to it rounding decides which piece holds: nothing can be claimed of
+    // such a state. A kink that bonds have passed for good by their memory is
+    // left out.
     const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     bool                   is_at  = false;
     phi.for_each_point(s,
@@ -120,7 +120,7 @@ namespace Debond
   {
     // Rounding in s may put a bond on the wrong side of a kink. With the
     // smaller of the second derivatives on both sides, a positive definite S +
-    // Phi'' proves a local minimum on whichever side the bond is.
+    // Phi'' means a local minimum on whichever side the bond is.
     const AdhesiveLaw &law = phi.adhesive_law();
     return phi.matrix(s, [&](const double stretch, const double reached) {
       return std::min(law.second_derivative((1. + part) * stretch, reached),

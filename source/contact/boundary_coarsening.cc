@@ -57,12 +57,11 @@ namespace Debond
               entries.emplace_back(i, number[i], 1.);
               continue;
             }
-          // Weights are not negative and sum to one. So constants are kept, and
-          // from s <= 0 on the coarse nodes follows P s <= 0 on the fine ones:
-          // the coarse space needs no constraints but bounds.
           // A node that goes has a neighbour that is kept, as the set is
           // maximal. It is interpolated between these by the inverse of their
-          // distances: in 2D linearly.
+          // distances: in 2D linearly. Weights are not negative and sum to one,
+          // so that constants are kept and s <= 0 on the coarse nodes gives P s
+          // <= 0 on the fine ones: the coarse space needs bounds only.
           const auto closeness = [&](const unsigned int j) {
             return number[j] == none ?
                      0. :

@@ -7,9 +7,9 @@ namespace Debond
   std::vector<std::set<unsigned int>>
   neighbours(const ContactBoundary<dim> &boundary)
   {
-    // All coefficients of a face depend on each other in Phi, with quadratic
-    // displacements those of edges too. Held vertices are no unknowns and
-    // connect nothing.
+    // Coefficients of one face are those that a quadrature point can couple,
+    // with quadratic displacements those of edges too. Held vertices are no
+    // unknowns and connect nothing.
     std::vector<std::set<unsigned int>> result(boundary.nodes.size());
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)

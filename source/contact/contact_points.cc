@@ -223,7 +223,7 @@ namespace Debond
   ContactPoints<dim>::trace_on(const Face &face, const VectorView &s) const
   {
     // Together unknown and prescribed coefficients are the whole trace w_nu of
-    // the face, which tests on places between the nodes need.
+    // the face, which results between the nodes are computed from.
     Trace trace = {};
     for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
       trace[k] = face.is_held(k) ? held_trace(face, k) : s(face.node(k));
