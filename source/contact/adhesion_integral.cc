@@ -201,10 +201,10 @@ namespace Debond
   {
     AssertDimension(delta.size(), n_nodes());
 
-    // The discrete form of (9): an equilibrium may use any traction that the
-    // law allows, at each point independently of the others, so that the
-    // interval of a node is the sum of theirs. Values of the shape functions
-    // are not negative, which keeps lower ends below upper ends.
+    // This is the discrete form of (9). An equilibrium may use any traction
+    // that the law allows, at each point independently of the others, so that
+    // the interval of a node is the sum of theirs. Values of the shape
+    // functions are not negative, which keeps lower ends below upper ends.
     std::vector<Interval> forces(n_nodes(), Interval{0., 0.});
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       for (unsigned int k = 0; k < point.n_nodes; ++k)

@@ -100,7 +100,7 @@ namespace Debond
                 points[k].barycentric[k] = 1.;
               }
             break;
-          // One point a face, as exact as the vertices for linear functions,
+          // One point a face is as exact for linear functions as the vertices,
           // but it couples the nodes of the face.
           case Rule::midpoint:
             points.resize(1);

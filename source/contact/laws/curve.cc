@@ -210,8 +210,8 @@ namespace Debond
                        "partly broken (" + std::to_string(n_drops) + ")" :
                        "softening"});
       }
-    // What holds from the last point on: a traction of zero, or a constant one,
-    // whose bonds never break and whose fracture energy is infinite.
+    // The last traction holds from the last point on. If it is not zero, bonds
+    // never break and their fracture energy is infinite.
     const double last = curve[end - 1].second;
     law.pieces.push_back(
       {0., -last, no_end, last == 0. ? "broken" : "holding"});

@@ -6,8 +6,8 @@ namespace Debond
   ContactLawParameters
   no_adhesion()
   {
-    // One piece without traction: what remains of (9) is [0, inf) at 0 and
-    // zero below, which the bound s <= 0 says.
+    // What remains of (9) without a traction is [0, inf) at 0 and zero below,
+    // which the bound s <= 0 says.
     return {"none", {{0., 0., no_end, "free"}}, ""};
   }
 

@@ -136,7 +136,7 @@ namespace Debond
     void
     complete(const std::string &suffix, Texts &bonds, ParameterTable &table)
     {
-      // Neither strength nor energy: a and M are all there is, and both have
+      // Without a strength or an energy there are a and M, which both have
       // defaults, unless an entry has been emptied on purpose.
       if (bonds[2].empty() && bonds[3].empty())
         {

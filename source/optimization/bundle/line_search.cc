@@ -123,8 +123,8 @@ namespace Debond
       result.slope          = eta * d;
       const double t_beyond = t_R - result.t_L;
       const double distance = t_beyond * d_norm;
-      // The linearisation error of y_{k+1} as alpha_j^k is defined in the
-      // paper, with differences from J(x_k) in place of both values of J.
+      // This is the linearisation error alpha_j^k of the paper for y_{k+1},
+      // with differences from J(x_k) in place of both values of J.
       result.alpha = result.change - change + t_beyond * result.slope;
       result.beta  = std::max(std::abs(result.alpha),
                              parameters.gamma * distance * distance);

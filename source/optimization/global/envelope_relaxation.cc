@@ -97,10 +97,10 @@ namespace Debond
                       const std::vector<ConvexEnvelope> &envelopes,
                       Eigen::VectorXd                   &s)
   {
-    // Newton's method for a convex function of parabolas and lines: as long as
-    // the unknowns stay on their parts of the envelopes it is quadratic, and
-    // one linear system gives the minimum. Nothing depends on it being reached,
-    // as every point gives a bound.
+    // This is Newton's method for a convex function of parabolas and lines. As
+    // long as the unknowns stay on their parts of the envelopes it is
+    // quadratic, and one linear system gives the minimum. Nothing depends on it
+    // being reached, as every point gives a bound.
     s = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
     std::vector<int> places, old_places;
     for (unsigned int step = 0; step < maximum_newton_steps; ++step)
