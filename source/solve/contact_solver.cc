@@ -87,6 +87,25 @@ namespace Debond
 
 
 
+    /// The minimum of J, which is the functional of the problem and the @p
+    /// energy of what is prescribed.
+    ContactMinimum
+    by_majorise_minimise(const SolverParameters &parameters,
+                         const double            energy,
+                         Progress               &progress,
+                         MajorantProblem        &problem)
+    {
+      ContactMinimum result;
+      static_cast<MajoriseMinimiseResult &>(result) =
+        MajoriseMinimise(parameters.majorise_minimise)
+          .minimize(problem,
+                    progress.monitor<MajoriseMinimiseIteration>(energy));
+      add_energy(energy, result);
+      return result;
+    }
+
+
+
     /// Minimises the condensed functional, 1/2 s'S s - g's + Phi(s) + c_0.
     template <int dim>
     class CondensedSolver : public ContactSolver<dim>
@@ -137,10 +156,12 @@ namespace Debond
       {
         // All factors share one factorisation: another load costs its two
         // triangular solves.
-        here.emplace(factors == LoadFactors(1.) ?
-                       whole :
-                       at_factors(whole, problem, bonds, factors));
-        ContactMinimum result;
+        // Bonds that have broken for good have another energy at s = 0.
+        const bool is_whole =
+          factors == LoadFactors(1.) &&
+          bonds.value_at_zero() == scene.adhesion().value_at_zero();
+        here.emplace(is_whole ? whole :
+                                at_factors(whole, problem, bonds, factors));
         // The bundle's epsilon_s is a part of the energy of the body without
         // contact. Without loads there is none, and without contact nodes there
         // is no metric S; majorise-minimise then ends at once.
@@ -156,13 +177,10 @@ namespace Debond
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
-        const double     energy = here->energy_at_zero();
-        static_cast<MajoriseMinimiseResult &>(result) =
-          MajoriseMinimise(parameters.majorise_minimise)
-            .minimize(condensed,
-                      progress.monitor<MajoriseMinimiseIteration>(energy));
-        add_energy(energy, result);
-        return result;
+        return by_majorise_minimise(parameters,
+                                    here->energy_at_zero(),
+                                    progress,
+                                    condensed);
       }
 
       Eigen::VectorXd
@@ -347,14 +365,10 @@ namespace Debond
         // as is of use for the next one.
         DisplacementProblem minimised(
           problem, load, bonds, *cycle, u, progress.interruption);
-        const double   energy = prescribed_energy(problem, bonds, factors);
-        ContactMinimum result;
-        static_cast<MajoriseMinimiseResult &>(result) =
-          MajoriseMinimise(parameters.majorise_minimise)
-            .minimize(minimised,
-                      progress.monitor<MajoriseMinimiseIteration>(energy));
-        add_energy(energy, result);
-        return result;
+        return by_majorise_minimise(parameters,
+                                    prescribed_energy(problem, bonds, factors),
+                                    progress,
+                                    minimised);
       }
 
       Eigen::VectorXd

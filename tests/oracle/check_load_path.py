@@ -91,10 +91,13 @@ def check_column_for_good(dim, quadrature, degree):
     scenes.section(f"Bonds that do not heal in {dim}D, degree {degree}, {quadrature}")
     path = column(dim, f"Mesh/Degree={degree}", "Contact law/Quadrature=" + quadrature,
                   "Load path/Factors=-1, 0:0.07:2.8, 2.8:-0.07:0, -1, 1",
-                  "Load path/Bonds heal=false")["path"]
+                  "Load path/Bonds heal=false")
+    path, history = path["path"], path["history"]
     area, snap, broken = area_of(dim), M * (k + a), False
     scale = area * a * M * M
     check("all steps", len(path) == 84)
+    # The last step, at the factor 1, has what its bonds have taken in J.
+    close("J of the iterations", history[-1]["functional"], path[-1]["J"], 1e-12, scale)
     for row in path:
         was_broken, broken = broken, broken or row["factor"] > snap
         pull = max(0., row["factor"])
