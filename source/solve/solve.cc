@@ -175,7 +175,10 @@ namespace Debond
     else
       solver->start_from_coarser(parameters, result);
     if (condensed == nullptr)
-      result.parts["coarser meshes"] = timer.wall_time();
+      {
+        result.parts["coarser meshes"] = timer.wall_time();
+        timer.restart();
+      }
     // The whole load is the factor 1; load paths call the same solver with
     // others.
     const ContactMinimum minimum =

@@ -49,13 +49,13 @@ namespace Debond
 
 
   /**
-   * Majorise-minimise from @p u in extended precision (ExtendedOperator), so
-   * that what remains of its errors is the rounding of the result; where Phi
-   * softens by Newton steps. Active sets
-   * for u_nu <= 0; the linear systems are solved by flexible conjugate
-   * gradients with @p solver as preconditioner (Notay, SIAM J. Sci. Comput. 22,
-   * 2000), to 1e-13 of the energy. The few directions in which factors in
-   * double precision are wrong take a few steps more.
+   * Goes on from @p u by majorise-minimise in extended precision
+   * (ExtendedOperator), or by Newton steps where Phi softens, so that only the
+   * rounding of the result remains of its errors. Bounds of u_nu are kept by
+   * active sets. The linear systems are solved by flexible conjugate gradients
+   * with @p solver as preconditioner (Notay, SIAM J. Sci. Comput. 22, 2000), to
+   * 1e-13 of the energy. The few directions in which factors in double
+   * precision are wrong take a few steps more.
    *
    * u becomes the result if it converged, and stays as it is otherwise. The
    * load is @p factors times that of the last assemble().
