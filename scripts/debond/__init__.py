@@ -1,8 +1,4 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Studies and pictures; installs what they need if it is missing."""
-import os
-import subprocess
+"""Runs of Debond from Python, see doc/guide/python.md."""
 
-subprocess.run([os.path.join(os.path.dirname(__file__), "../install"),
-                "python3-numpy", "python3-matplotlib", "python3-meshio"],
-               check=True)
+from .runs import Error, Results, run

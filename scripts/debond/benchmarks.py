@@ -11,25 +11,26 @@ import sys
 
 from . import cases, plots, report
 from . import study as studies
+from .runs import SOURCE
 
 SOLVERS = ("cholesky", "ml", "hypre")
 
 
-def measure(study, case, repetitions):
+def measure(program, study, case, repetitions):
     """A row of the table: medians of contact and linear solves that alternate;
     None if the scene is not solved."""
     matrices = cases.Case(case.label, [], case.scene, {
         **case.settings, "Output/Matrices": "true"}, case.directory + ".mtx")
-    cases.run(cases.PROGRAM, [matrices], 1)
+    cases.run(program, [matrices], 1)
     if matrices.status() not in study.accepted:
         print(f"{case.label}: {matrices.status()}", file=sys.stderr)
         return None
     seconds = {name: [] for name in ("contact", *SOLVERS)}
     steps = {}
     for _ in range(repetitions):
-        cases.run(cases.PROGRAM, [case], 1, afresh=True)
+        cases.run(program, [case], 1, afresh=True)
         seconds["contact"].append(case.summary()["timings_s"]["solve"])
-        done = subprocess.run([cases.PROGRAM + "-baselines", matrices.directory,
+        done = subprocess.run([program + "-baselines", matrices.directory,
                                *SOLVERS], check=True, stdout=subprocess.PIPE,
                               text=True)
         for line in done.stdout.splitlines()[1:]:
@@ -82,16 +83,16 @@ def main():
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--output", default="output/benchmarks")
     options = parser.parse_args()
-    cases.build("debond debond-baselines")
+    program = cases.build("debond debond-baselines")
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
     rows = []
     for file in options.studies or sorted(glob.glob(
-            os.path.join(cases.SOURCE, "prm", "benchmarks", "*.prm"))):
+            os.path.join(SOURCE, "prm", "benchmarks", "*.prm"))):
         study = studies.Study(file, [
             f"Study/Output directory={options.output}/{{study}}"])
         for case in study.cases[:1] if options.quick else study.cases:
-            rows.append(measure(study, case, 1 if options.quick else
-                                options.repetitions))
+            rows.append(measure(program, study, case, 1 if options.quick
+                                else options.repetitions))
     found = [row for row in rows if row]
     write(found, options.output)
     return 0 if len(found) == len(rows) else 3

@@ -2,9 +2,7 @@
 """Runs of the program: which there are, whether they are done, and how they
 are divided among processes."""
 
-import csv
 import hashlib
-import json
 import os
 import re
 import signal
@@ -12,32 +10,18 @@ import subprocess
 import sys
 import time
 
-import numpy
-
 from . import prm
-
-SOURCE = os.path.abspath(os.path.join(__file__, "../../.."))
-PROGRAM = os.path.join(SOURCE, "build", "debond")
+from .runs import SOURCE, program, read_summary
 
 
 def build(targets="debond"):
-    subprocess.run([os.path.join(SOURCE, "scripts", "build")], check=True,
-                   env={**os.environ, "DEBOND_TARGETS": targets})
-
-
-def read_csv(path):
-    """The columns of a table by their titles: arrays of numbers, of places their x,
-    or lists of words where not all are numbers; empty if there is no such file."""
-    if not os.path.exists(path):
-        return {}
-    with open(path, newline="", encoding="utf8") as file:
-        rows = list(csv.reader(line for line in file
-                               if line.strip() and line[0] != "#"))
-    columns = {}
-    for title, *cells in zip(*rows):
-        numbers = [prm.number(cell.partition(" ")[0] or "nan") for cell in cells]
-        columns[title] = cells if None in numbers else numpy.array(numbers)
-    return columns
+    """Builds the program in the source tree, if it is there and $DEBOND is not
+    set; returns the program."""
+    script = os.path.join(SOURCE, "scripts", "build")
+    if os.path.exists(script) and "DEBOND" not in os.environ:
+        subprocess.run([script], check=True,
+                       env={**os.environ, "DEBOND_TARGETS": targets})
+    return program()
 
 
 class Case:
@@ -56,11 +40,7 @@ class Case:
 
     def summary(self):
         """summary.json, empty as long as there is none that counts."""
-        try:
-            with open(self.path("summary.json"), encoding="utf8") as file:
-                summary = json.load(file)
-        except (OSError, ValueError):
-            return {}
+        summary = read_summary(self.directory)
         return {} if summary.get("status") == "interrupted" else summary
 
     def status(self):

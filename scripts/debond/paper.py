@@ -8,6 +8,7 @@ import shutil
 import subprocess
 
 from . import cases, picture, report
+from .runs import SOURCE
 
 # Studies of prm/studies/, and which of their plots the pages show as what.
 STUDIES = {
@@ -83,10 +84,8 @@ def main():
                         "without STUDY all other pictures of pages")
     parser.add_argument("--debond", help="a program that is built already")
     options = parser.parse_args()
-    if not options.debond:
-        cases.build()
-    program = os.path.abspath(options.debond or cases.PROGRAM)
-    os.chdir(cases.SOURCE)
+    program = os.path.abspath(options.debond or cases.build())
+    os.chdir(SOURCE)
     if options.doc and not options.studies:
         make_pictures(program)
     worst = 0

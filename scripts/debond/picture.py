@@ -2,7 +2,6 @@
 """Draws what a run has written in its output directory."""
 
 import argparse
-import glob
 import os
 import sys
 
@@ -11,9 +10,9 @@ import numpy
 from matplotlib.collections import LineCollection, PolyCollection
 
 from . import plots
-from .cases import read_csv
 from .plots import plt
 from .prm import BadInput
+from .runs import bodies, read_csv
 
 ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
          "frameon": False}
@@ -111,8 +110,7 @@ def show_nodes(axes, profile, place, size):
 
 
 def draw_body(directory, length, stress, field):
-    files = (glob.glob(os.path.join(directory, "body.vtu")) or
-             sorted(glob.glob(os.path.join(directory, "body.rank*.vtu"))))
+    files = bodies(directory)
     if not files:
         return
     grid = Grid(files)

@@ -2,18 +2,23 @@
 """The plots of studies, as PNG and SVG."""
 
 import os
+import re
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib import ticker
 
 from . import prm
 from . import study as studies
-from .cases import read_csv
+from .runs import read_csv
 
 # More curves than these have the colours of a scale, in their order.
 MOST_COLOURS = 10
+# Logarithmic axes that are shorter, in decades, have labels of a linear one, or
+# also at 2 and 5 times the powers of ten.
+LINEAR, TWO_AND_FIVE = 1.6, 4.2
 MOST_LABELS = 25
 
 plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.color": "0.85",
@@ -62,10 +67,23 @@ class Plot:
             self.axes.legend(
                 fontsize=8 if len(labels) <= 12 else 6.5,
                 loc="upper center" if below else "upper left",
-                bbox_to_anchor=(0.5, -0.14) if below else (1.01, 1.),
-                ncol=2 if below else 1, borderaxespad=0.,
+                bbox_to_anchor=(0.5, 0.) if below else (1.01, 1.),
+                ncol=2 if below else 1, borderaxespad=5. if below else 0.,
                 title=f"one in {every} of {own}" if every > 1 else None)
+        for name in self.log:
+            label_ticks(getattr(self.axes, name + "axis"))
         save(self.figure, directory, self.name)
+
+
+def label_ticks(axis):
+    """Gives a logarithmic axis more than three labels."""
+    low, high = axis.get_view_interval()
+    decades = numpy.log10(high / low)
+    if decades < TWO_AND_FIVE:
+        axis.set_major_locator(ticker.AutoLocator() if decades < LINEAR else
+                               ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(ticker.NullFormatter())
 
 
 def save(figure, directory, name):
@@ -97,7 +115,7 @@ def over_iterations(plot, study, rows):
 
 
 def over_sweep(plot, study, rows):
-    """Iterations, or their kinds, over the last sweep over numbers > 0."""
+    """Iterations, or their kinds, over the last sweep over numbers."""
     axis = axis_of(study)
     plot.axes.set_xlabel(study.sweeps[axis].label)
     for kind in (("total",) if plot.name == "iterations" else
@@ -110,9 +128,9 @@ def over_sweep(plot, study, rows):
 
 
 def axis_of(study):
-    found = [i for i, sweep in enumerate(study.sweeps) if sweep.is_positive]
+    found = [i for i, sweep in enumerate(study.sweeps) if sweep.has_numbers]
     if not found:
-        study.fault("Plots/Kinds", "there is no sweep over numbers > 0")
+        study.fault("Plots/Kinds", "there is no sweep over numbers")
     return found[-1]
 
 
@@ -144,7 +162,8 @@ def along_contact(plot, study, rows):
     title = "u_nu" if plot.name == "displacement" else "normal_force_density"
     for row, profile in profiles(rows):
         name, x, in_a_row = position(profile)
-        plot.axes.set_xlabel(name)
+        plot.axes.set_xlabel(name if len(name) > 1 else
+                             f"{name} along the contact boundary")
         order = numpy.argsort(x)
         plot.add(row.case.label, x[order], profile[title][order],
                  ("-" if title == "u_nu" else "o-") if in_a_row else "o")
@@ -168,24 +187,23 @@ def law(plot, study, rows):
                  "-", color="0.6", zorder=0)
 
 
-def columns(study, rows, kind):
-    """'Y over X', both columns: a curve for each value of all sweeps but the
-    last."""
+def columns(study, rows, kind, log):
+    """'Y over X', columns or sweeps over numbers: a curve for each value of all
+    sweeps but X, or but the last one if X is none."""
     names = kind.split(" over ")
     if len(names) != 2:
         study.fault("Plots/Kinds", f"there is no plot '{kind}'; known are Y over "
                     "X and " + ", ".join(KINDS))
     y, x = study.read({"Plots/Kinds": names}, "Plots/Kinds", lambda names: [
-        study.columns.get(name) or studies.Column(name) for name in names])
+        study.values_of(name) for name in names])
     plot = Plot(kind.replace(" ", "-").replace("/", "_"),
-                f"{names[0]} over {names[1]}.", names[1], names[0])
-    found = studies.groups(study, rows, study.sweeps and study.sweeps[-1])
-    for label, group in found.items():
+                f"{names[0]} over {names[1]}.", names[1], names[0], log)
+    along = [sweep for sweep in study.sweeps if sweep.label == names[1]]
+    for label, group in studies.groups(
+            study, rows, (along or study.sweeps or [None])[-1]).items():
         both = [[value if isinstance(value, (int, float)) else None
-                 for value in map(column.value, group)] for column in (x, y)]
+                 for value in map(values, group)] for values in (x, y)]
         plot.add(label, *both, "o-")
-    if all(min(*x, *y) > 0 for _, x, y, *_ in plot.curves):
-        plot.axes.set(xscale="log", yscale="log")
     for power in study.powers if plot.curves else ():
         _, h, error, *_ = plot.curves[0]
         plot.add(f"{names[1]}^{power:g}", h, error[0] * (h / h[0])**power, "--",
@@ -200,15 +218,23 @@ KINDS = {
     "fit": (over_iterations, "Fitted lines C k^rate, each in the window it is "
             "fitted on.", "iteration k", ERROR, "xy"),
     "iterations": (over_sweep, "Iterations until the method stops.", "",
-                   "iterations", "xy"),
-    "steps": (over_sweep, "Kinds of steps.", "", "steps", "x"),
+                   "iterations", ""),
+    "steps": (over_sweep, "Kinds of steps.", "", "steps", ""),
     "displacement": (along_contact, "Normal displacement of the contact "
-                     "boundary; negative: lifted off.", "", "u_nu"),
+                     "boundary; negative: lifted off.", "",
+                     "normal displacement u_nu", ""),
     "force": (along_contact, "Normal force density of the contact boundary; "
-              "positive: pressed, negative: held.", "", "normal force density"),
+              "positive: pressed, negative: held.", "", "normal force density", ""),
     "law": (law, "Normal force density of the contact nodes over their normal "
-            "displacement, on the graph of the contact law.", "u_nu",
-            "normal force density")}
+            "displacement, on the graph of the contact law.",
+            "normal displacement u_nu", "normal force density", "")}
+
+
+def parse(kind):
+    """The name of a kind of plots, and which axes are logarithmic, 'x', 'y' or 'xy':
+    those of the kind, and what 'log', 'log x' or 'log y' behind it asks for."""
+    name, asked, axis = re.fullmatch(r"(.*?)( log(?: ([xy]))?)?", kind).groups()
+    return name, KINDS.get(name, [""])[-1] or (axis or "xy" if asked else "")
 
 
 def draw(study, rows):
@@ -218,12 +244,13 @@ def draw(study, rows):
     os.makedirs(directory, exist_ok=True)
     drawn, empty = [], []
     for kind in study.kinds:
-        if kind in KINDS:
-            function, *description = KINDS[kind]
-            plot = Plot(kind, *description)
+        name, log = parse(kind)
+        if name in KINDS:
+            function, *description, _ = KINDS[name]
+            plot = Plot(name, *description, log)
             function(plot, study, rows)
         else:
-            plot = columns(study, rows, kind)
+            plot = columns(study, rows, name, log)
         (drawn if plot.curves else empty).append(plot)
         plot.save(directory)
     return drawn, empty
@@ -232,7 +259,8 @@ def draw(study, rows):
 def check(study):
     """Throws BadInput where a plot is not known or not possible."""
     for kind in study.kinds:
-        if kind in ("iterations", "steps"):
+        name, log = parse(kind)
+        if name in ("iterations", "steps"):
             axis_of(study)
-        elif kind not in KINDS:
-            plt.close(columns(study, [], kind).figure)
+        elif name not in KINDS:
+            plt.close(columns(study, [], name, log).figure)

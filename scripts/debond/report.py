@@ -42,8 +42,9 @@ def table(study, rows):
                  else column.value(row) for k, row in enumerate(rows)]
         if column.pointer and any(row.summary for row in rows) and \
                 all(cell is None for cell in cells):
-            raise BadInput(f"{study.file}: Study/Columns: no case has "
-                           f"{column.pointer} in its summary.json")
+            found = next(row for row in rows if row.summary).find(column.pointer)
+            raise BadInput(f"{study.file}: Study/Columns: no case has {column.pointer}" +
+                           (f", but {', '.join(found)}" if found else ""))
         add(title, column, cells)
         if title in study.reference.columns:
             add(f"{title} ({study.reference.label})", column,
@@ -120,13 +121,12 @@ def main():
     parser.add_argument("--jobs", type=int, help="processes at a time")
     parser.add_argument("--debond", help="a program that is built already")
     options = parser.parse_args()
-    if not options.debond and not options.validate:
-        cases.build()
+    program = options.debond or (None if options.validate else cases.build())
     worst = 0
     for file in options.studies:
         try:
-            code = run(file, options.debond or cases.PROGRAM, options.set,
-                       options.jobs, options.validate)
+            code = run(file, program, options.set, options.jobs,
+                       options.validate)
         except BadInput as error:
             print(f"study: {error}", file=sys.stderr)
             code = 2

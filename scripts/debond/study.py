@@ -13,6 +13,7 @@ import numpy
 
 from . import cases, prm
 from .prm import BadInput
+from .runs import read_csv
 
 METHOD = "Solver/Method"
 SHORT_NAMES = {"iterations": "/iterations/total", "long": "/iterations/long",
@@ -23,6 +24,9 @@ SHORT_NAMES = {"iterations": "/iterations/total", "long": "/iterations/long",
                "seconds": "/timings_s/total"}
 LEVELS = ("level unknowns", "level error", "level ratio",
           "last level unknowns", "least ratio", "largest ratio")
+NAMES = ("status", "J", "J_min", "error", "rate", "window", "h", *LEVELS)
+FORMS = ("J at N", "error at N", "order of COLUMN", "TITLE = /POINTER",
+         "TITLE = largest COLUMN", "TITLE = least COLUMN")
 
 
 class Study:
@@ -144,8 +148,9 @@ class Study:
             return os.path.join(self.directory, folder, name)
 
         needs_minima = not {"J_min", "error", "rate", "window", "convergence",
-                            "fit"}.isdisjoint([*self.kinds, *(
-                                c.kind for c in self.columns.values())])
+                            "fit"}.isdisjoint([
+                                *(kind.split()[0] for kind in self.kinds),
+                                *(c.kind for c in self.columns.values())])
         preparation = os.path.join(self.directory, "preparation")
         for values in itertools.product(*(s.values for s in self.sweeps)):
             scene, settings = self.scenes[0], dict(self.settings)
@@ -177,6 +182,21 @@ class Study:
         self.first = self.preparation and cases.Case(
             "preparation", [], self.scenes[0], self.preparation, preparation)
 
+    def values_of(self, name):
+        """A function from rows to what they have in a column, or to the numbers of
+        a sweep. Throws ValueError."""
+        if name in self.columns:
+            return self.columns[name].value
+        for index, sweep in enumerate(self.sweeps):
+            if sweep.label == name and sweep.has_numbers:
+                return lambda row: prm.number(row.case.values[index])
+        try:
+            return Column(name).value
+        except ValueError as error:
+            own = [*self.columns, *(sweep.label for sweep in self.sweeps
+                                    if sweep.has_numbers)]
+            raise ValueError(f"{error}; and of this study {', '.join(own)}") from None
+
     def all_cases(self):
         return [self.first] * bool(self.first) + self.minima + self.cases
 
@@ -186,16 +206,19 @@ class Sweep:
 
     def __init__(self, label, values):
         self.label, self.values = label, values
-        self.is_positive = all((prm.number(value[0]) or 0) > 0
-                               for value in values)
+        self.has_numbers = all(prm.number(text) is not None
+                               for text, _, _ in values)
 
 
 def sweep_values(text):
-    """'a | b', or 'geometric FIRST LAST COUNT'."""
-    if not text.startswith("geometric"):
+    """'a | b', 'linear FIRST LAST COUNT' or 'geometric FIRST LAST COUNT'."""
+    kind, *ends = text.split() or [""]
+    space = {"linear": numpy.linspace, "geometric": numpy.geomspace}.get(kind)
+    if not space:
         return prm.items(text)
-    first, last, count = map(float, text.split()[1:])
-    return [f"{x:.6g}" for x in numpy.geomspace(first, last, int(count))]
+    if len(ends) != 3:
+        raise ValueError(f"expected {kind} FIRST LAST COUNT")
+    return [f"{x:.6g}" for x in space(*map(float, ends[:2]), int(ends[2]))]
 
 
 class Row:
@@ -204,7 +227,7 @@ class Row:
     def __init__(self, study, case):
         self.case, self.summary = case, case.summary()
         self.status = case.status()
-        self.history = cases.read_csv(case.path("history.csv")).get(
+        self.history = read_csv(case.path("history.csv")).get(
             "functional", numpy.array([]))
         self.minimum = study.minimum
         if case.minimum and case.minimum.status() == "success":
@@ -213,14 +236,30 @@ class Row:
                      if self.minimum is not None else None)
 
     def at(self, pointer):
-        """What is at a JSON pointer of the summary, or None."""
+        """What is at a JSON pointer of the summary, or the largest or least number
+        of a column of the load path, or None."""
+        found = self.find(pointer)
+        if isinstance(found, numpy.ndarray) and found.dtype.kind == "f":
+            found = found[numpy.isfinite(found)]
+            found = max(found, default=None) if pointer.startswith("largest") else \
+                min(found, default=None)
+        return None if isinstance(found, (dict, numpy.ndarray)) else found
+
+    def find(self, pointer):
+        """What is there, lists as dictionaries, or else the last dictionary on the
+        way."""
         found = self.summary
-        for key in pointer.strip("/").split("/"):
-            if isinstance(found, list) and key.isdigit():
-                found = dict(enumerate(found)).get(int(key))
-            else:
-                found = found.get(key) if isinstance(found, dict) else None
-        return None if isinstance(found, (dict, list)) else found
+        keys = pointer.strip("/").split("/")
+        if not pointer.startswith("/"):
+            found = read_csv(self.case.path("load_path.csv"))
+            keys = pointer.split()[1:]
+        for key in keys:
+            if not isinstance(found, dict) or key not in found:
+                return found if isinstance(found, dict) else {}
+            found = found[key]
+            if isinstance(found, list):
+                found = {str(k): entry for k, entry in enumerate(found)}
+        return found
 
     def functional(self, iteration=None):
         if iteration and iteration < len(self.history):
@@ -245,9 +284,12 @@ class Column:
     def __init__(self, name):
         self.title = self.kind = name
         self.pointer, self.iteration, self.digits = "", None, 2
-        number = re.match(r"(?:(.*?)\s*=\s*)?(/.*?)(?:\s+to\s+(\d+))?$", name)
+        number = re.match(r"(?:(.*?)\s*=\s*)?(/.*?|(?:largest|least) \w+)"
+                          r"(?:\s+to\s+(\d+))?$", name)
         at = re.match(r"(J|error) at (\d+)$", name)
-        if name in SHORT_NAMES:
+        if name in NAMES:
+            pass
+        elif name in SHORT_NAMES:
             self.kind, self.pointer = "number", SHORT_NAMES[name]
         elif number:
             self.kind, self.pointer = "number", number[2]
@@ -257,9 +299,9 @@ class Column:
             self.kind, self.iteration = at[1], int(at[2])
         elif name.startswith("order of "):
             self.kind = "order"
-        elif name not in ("status", "J", "J_min", "error", "rate", "window", "h",
-                          *LEVELS):
-            raise ValueError(f"there is no column '{name}'")
+        else:
+            raise ValueError(f"there is no column '{name}', but " + ", ".join(
+                (*NAMES, *SHORT_NAMES, *FORMS)))
         if self.kind in ("J", "J_min"):
             self.digits = 11
 
@@ -303,7 +345,7 @@ class Reference:
         self.minimum = float(value["Reference/Minimum"])
         if not value["Reference/File"]:
             return
-        table = cases.read_csv(os.path.join(study.folder,
+        table = read_csv(os.path.join(study.folder,
                                             value["Reference/File"]))
         wanted = prm.pairs(value["Reference/Rows"])
         self.key = value["Reference/Key"]
@@ -390,9 +432,11 @@ def groups(study, rows, without):
 
 
 def best_values(study, rows):
-    """For each value of the first sweep the value of the second, over numbers,
-    with the fewest iterations, and the range that needs at most 10 % more."""
-    if len(study.sweeps) < 2 or not study.sweeps[1].is_positive:
+    """For each value of the first sweep the value of the second, over numbers of
+    the solver, with the fewest iterations, and the range that needs at most 10 % more."""
+    if len(study.sweeps) < 2 or not study.sweeps[1].has_numbers or not all(
+            name.startswith("Solver/") for _, _, settings in study.sweeps[1].values
+            for name in settings):
         return []
     result = []
     for name, group in groups(study, rows, study.sweeps[1]).items():

@@ -15,11 +15,12 @@ and without a block
   <!-- example: run COMMAND -->    is a command beside the text
   <!-- example: prints TEXT -->    a line that the last commands printed has TEXT
 
-Every block with a command of the program needs one of them. Words are compared
+Every block with a command of the program or of Python needs one of them. Words are compared
 to the letter, numbers to their printed digits, those below 1e-8 only by size:
 they are rounding.
 """
 
+import os
 import pathlib
 import re
 import subprocess
@@ -27,7 +28,10 @@ import sys
 import tempfile
 
 MARK = re.compile(r"<!-- example: (.*?) -->")
-COMMAND = re.compile(r"scripts/run|^(\S*/)?debond\b")
+COMMAND = re.compile(r"scripts/(run|python)|^(\S*/)?debond\b")
+SCRIPTS = {"scripts/run": "debond", "scripts/python": "/usr/bin/python3",
+           "scripts/study": "/usr/bin/python3 -m debond study",
+           "scripts/picture": "/usr/bin/python3 -m debond picture"}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?$")
 ROUNDING = 1e-8
 
@@ -60,6 +64,9 @@ class Document:
     def __init__(self, path, debond, root, directory):
         self.path = path
         self.debond = debond
+        self.environment = {
+            **os.environ, "DEBOND": str(debond), "MPLBACKEND": "Agg",
+            "PYTHONPATH": str(root / "scripts")}
         self.directory = directory
         self.output = ""
         self.mark = None
@@ -71,13 +78,14 @@ class Document:
         self.faults.append(f"{self.path.name}:{number}: {text}")
 
     def run(self, number, commands):
-        commands = re.sub(r"scripts/run\b", "debond", commands)
+        for script, command in SCRIPTS.items():
+            commands = re.sub(rf"{script}\b", command, commands)
         result = subprocess.run(
             ["bash", "-euc",
              f'debond() {{ "{self.debond}" "$@"; }}\n{commands}'],
             cwd=self.directory, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, check=False)
+            text=True, check=False, env=self.environment)
         self.output = result.stdout
         if result.returncode:
             self.fault(number, f"exit code {result.returncode} of\n{commands}\n"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_install.sh DEBOND BUILD_DIRECTORY CMAKE: what is installed into an empty
-# directory runs there, and its pages find each other; a program of its own is
-# built with the library; the Debian package has the same program.
+# directory runs there, also from Python, and its pages find each other; a program of
+# its own is built with the library; the Debian package has the same program.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 build=$2
 cmake=$3
@@ -14,6 +14,14 @@ cd work
 "$prefix/bin/debond" "$prefix/share/debond/prm/benchmark-40x4.prm" >log ||
   fail "The installed program fails: $(cat log)"
 grep -Eq "status +success" log || fail "no success: $(cat log)"
+cat >runs.py <<END
+import debond
+print(debond.run("$prefix/share/debond/prm/benchmark-40x4.prm").summary["status"])
+END
+env -u DEBOND PATH="$prefix/bin:/usr/bin:/bin" \
+  PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 runs.py >log 2>&1 ||
+  fail "no run from Python: $(cat log)"
+grep -qx success log || fail "no success from Python: $(cat log)"
 "$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
 
@@ -29,6 +37,7 @@ fi
 "$(dirname "$cmake")/cpack" --config "$build/CPackConfig.cmake" -B deb >log 2>&1 ||
   fail "no Debian package: $(cat log)"
 dpkg-deb -x deb/debond_*.deb root
+[ -s root/usr/lib/python3/dist-packages/debond/__init__.py ] || fail "no Python"
 root/usr/bin/debond --version >log || fail "the packaged program fails: $(cat log)"
 dpkg-deb -f deb/debond_*.deb Depends | grep -q "libdeal.ii" ||
   fail "the package does not depend on deal.II"

@@ -76,6 +76,57 @@ assert "Cells" in found["status"][1] and "wrong" in said, (found, said)
 pathlib.Path("bad.prm").write_text(HEAD.replace("Columns", "Colums") + "end\n")
 said = study("bad.prm", code=2)
 assert "bad.prm:3: Study/Colums" in said and "Study/Columns?" in said, said
+# also which columns there are, before and after the runs.
+columns = "status | unknowns | J"
+for entry, words in {
+        "Plots/Kinds=force over M": ("Plots/Kinds", "'force'", "TITLE = /POINTER",
+                                     "unknowns, J, h, broken"),
+        "Plots/Kinds=J over cells": ("'cells'", "order of COLUMN"),
+        "Plots/Kinds=forces": ("there is no plot 'forces'", "convergence"),
+        "Study/Columns=/reactions/top/1": ("no case has /reactions/top/1, but left",),
+        "Study/Columns=/reactions/left/2": ("but 0, 1",),
+        "Study/Columns=J | largest J": ("no case has largest J",),
+        "Sweep 2/Values=linear 1 2": ("Sweep 2/Values", "linear FIRST LAST COUNT"),
+}.items():
+    said = study("one.prm", "--set", entry, code=2)
+    assert all(word in said for word in words), said
+
+# A column of a load path over a number of the scene, with a curve for each value of
+# the other sweep, though that is the last one. The block comes off as a column does:
+# it pulls with at most a M on each unit of its length, 20.
+pathlib.Path("path.prm").write_text(f"""include {SOURCE}/prm/cookbook/punch.prm
+subsection Load path
+  set Displacement factors = 0:1:30
+end
+""")
+pathlib.Path("force.prm").write_text("""subsection Study
+  set Scene   = path.prm
+  set Columns = last force = /reactions/top/1 | force = largest reaction_top_y to 9
+end
+subsection Sweep 1
+  set Parameter = Contact law/Bond threshold
+  set Label     = M in mm
+  set Values    = linear 0.005 0.015 3
+end
+subsection Sweep 2
+  set Parameter = Contact law/Bond stiffness
+  set Label     = a
+  set Values    = 25 | 50
+end
+subsection Plots
+  set Kinds = force over M in mm | last force over force log y | iterations log x
+end
+""")
+study("force.prm")
+found = table("output/force")
+assert abs(found["last force"]).max() < 1e-9, found
+for M, a, force in zip(found["M in mm"], found["a"], found["force"]):
+    assert 0.8 * 20 * a * M < force <= 20 * a * M * (1 + 1e-9), (M, a, force)
+curves = pathlib.Path("output/force/plots/force-over-M-in-mm.svg").read_text()
+assert "a = 25" in curves and "a = 50" in curves and "M in mm = " not in curves
+page = open("output/force/index.md").read()
+assert "The plot last-force-over-force has no points" in page
+assert "iterations.png" in page and "Best values" not in page
 
 # A signal ends it, and it goes on.
 pathlib.Path("long.prm").write_text(HEAD + SWEEPS.replace(
@@ -97,6 +148,23 @@ for k in range(50):
     plot.add(f"case {k}", [0, 1], [k, k + 1])
 plot.save(".")
 assert len(plot.axes.get_legend().get_texts()) == 25
+
+# Axes are linear unless asked, and logarithmic ones have more than three labels.
+assert plots.Plot("a", "", "x", "y").axes.get_xscale() == "linear"
+assert plots.parse("J over h log") == ("J over h", "xy")
+assert plots.parse("iterations log x") == ("iterations", "x")
+assert plots.parse("steps") == ("steps", "") and plots.parse("fit") == ("fit", "xy")
+plot = plots.Plot("axes", "", "x", "y", "x")
+axis = plot.axes.xaxis
+for decades in numpy.linspace(0.05, 8, 100):
+    for low in 1., 1.1, 2., 4., 7e-6:
+        plot.axes.set_xlim(low, low * 10**decades)
+        axis.set_major_locator(plots.ticker.LogLocator())
+        plots.label_ticks(axis)
+        shown = [tick for tick in axis.get_majorticklocs() if axis.major.formatter(tick)
+                 and 0.999 * low < tick < 1.001 * low * 10**decades]
+        assert 3 < len(shown) < 14, (low, decades, shown)
+plots.plt.close(plot.figure)
 
 # The rate of a power law is its exponent, in the window that belongs to it.
 k = numpy.arange(1, 2001)

@@ -13,7 +13,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 DEBOND = pathlib.Path(sys.argv[1]).resolve()
 sys.path.insert(0, str(SOURCE / "scripts"))
 
-from debond import cases  # noqa: E402
+from debond import runs  # noqa: E402
 
 directory = tempfile.mkdtemp()
 atexit.register(shutil.rmtree, directory)
@@ -29,7 +29,9 @@ def study(file, *options, code=0):
 
 
 def table(folder):
-    return cases.read_csv(os.path.join(folder, "table.csv"))
+    """Arrays of numbers and lists of words."""
+    return {title: cells if cells.dtype.kind == "f" else cells.tolist() for title, cells
+            in runs.read_csv(os.path.join(folder, "table.csv")).items()}
 
 
 def near(a, b, tolerance):
