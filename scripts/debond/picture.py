@@ -22,7 +22,7 @@ LARGEST_SHOWN = 0.06
 CUT = 0.995
 MOST_CELLS_WITH_EDGES = 3000
 STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
-          "broken": "tab:red", "free": "tab:gray", "held": "k"}
+          "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray", "held": "k"}
 
 
 class Grid:

@@ -14,8 +14,13 @@ namespace Debond
   std::vector<std::string>
   state_names(const AdhesiveLaw &law)
   {
-    std::vector<std::string> names = {
-      "contact", "bonded", "kink", "broken", "free", "held"};
+    std::vector<std::string> names = {"broken but closed",
+                                      "contact",
+                                      "bonded",
+                                      "kink",
+                                      "broken",
+                                      "free",
+                                      "held"};
     for (unsigned int k = 0; k < law.pieces().size(); ++k)
       if (std::find(names.begin(), names.end(), law.name(k)) == names.end())
         names.push_back(law.name(k));
@@ -86,7 +91,7 @@ namespace Debond
   const std::string &
   Verification<dim>::name(const BondState state) const
   {
-    return state_names[static_cast<unsigned int>(state)];
+    return state_names[static_cast<int>(state) + 1];
   }
 
 
@@ -171,7 +176,7 @@ namespace Debond
         return static_cast<BondState>(std::find(result.state_names.begin(),
                                                 result.state_names.end(),
                                                 law.name(piece)) -
-                                      result.state_names.begin());
+                                      result.state_names.begin() - 1);
       };
       node.branch =
         bonds.energy == 0. ?
@@ -190,7 +195,9 @@ namespace Debond
       if (node.s >= -no_gap ||
           (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
-          node.state = BondState::contact;
+          node.state = least_piece > 0 && node.branch == BondState::broken ?
+                         BondState::broken_but_closed :
+                         BondState::contact;
           return;
         }
       node.state = node.branch;
@@ -622,8 +629,13 @@ namespace Debond
                       {displacement.linfty_norm(), found.supported});
     compute_violations(adhesion, s, scales, result.nodes);
 
-    const double largest_s = s.lpNorm<Eigen::Infinity>();
-    result.law_violation   = 0.;
+    // Where all bonds that broke for good are closed again, s is rounding.
+    double largest_s = s.lpNorm<Eigen::Infinity>();
+    for (unsigned int i = 0; i < s.size(); ++i)
+      largest_s =
+        std::max(largest_s,
+                 -adhesion.reached(i) * adhesion.points().bonds_at(i).stretch);
+    result.law_violation = 0.;
     for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
         set_state(i, adhesion, scales[i], largest_s, tolerance, result);

@@ -101,10 +101,9 @@ namespace Debond
 
     // Columns have to be the same at all steps, so that states that the law can
     // have are listed even if no node is in them.
-    constexpr unsigned int n_known =
-      static_cast<unsigned int>(BondState::held) + 1;
+    constexpr int n_known = static_cast<int>(BondState::held) + 1;
     state.other_parts.emplace_back(verification.name(BondState::free), 0.);
-    for (std::size_t k = n_known; k < verification.state_names.size(); ++k)
+    for (std::size_t k = n_known + 1; k < verification.state_names.size(); ++k)
       state.other_parts.emplace_back(as_title(verification.state_names[k]), 0.);
     const auto part = [&](const BondState branch) -> double & {
       switch (branch)
@@ -120,8 +119,7 @@ namespace Debond
                      state.broken_part :
                      state.other_parts[0].second;
           default:
-            return state
-              .other_parts[static_cast<unsigned int>(branch) - n_known + 1]
+            return state.other_parts[static_cast<int>(branch) - n_known + 1]
               .second;
         }
     };
@@ -133,7 +131,8 @@ namespace Debond
         const ContactNodeState &node = verification.nodes[i];
         s(i)                         = node.s;
         measure += nodes[i].measure;
-        part(node.state == BondState::contact ? node.state : node.branch) +=
+        part(node.state <= BondState::contact ? BondState::contact :
+                                                node.branch) +=
           nodes[i].measure;
         state.mean_gap -= nodes[i].measure * node.s;
         state.normal_force += node.normal_force;

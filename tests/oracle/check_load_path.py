@@ -30,7 +30,10 @@ def area_of(dim):
     return 0.3 if dim == 2 else 0.3 * 0.1
 
 
-def column(dim, *others):
+WINKLER = [f"Contact law/Bond stiffness={a}", f"Contact law/Bond threshold={M}"]
+
+
+def column(dim, *others, law=WINKLER):
     """With the entries that a path needs."""
     body = ["Mesh/Lengths=0.3, 0.2", "Mesh/Cells=3, 2", "Loads/Traction bottom=0; 1"]
     if dim == 3:
@@ -38,9 +41,8 @@ def column(dim, *others):
                 "Loads/Traction bottom=0; 1; 0"]
     return solve(f"Material/Young modulus={E}", "Material/Poisson ratio=0",
                  "Boundary conditions/Contact boundary=bottom",
-                 "Boundary conditions/Clamped boundaries=top", f"Contact law/Bond stiffness={a}",
-                 f"Contact law/Bond threshold={M}", "Contact law/Tangential displacement=free",
-                 *body, *others)
+                 "Boundary conditions/Clamped boundaries=top",
+                 "Contact law/Tangential displacement=free", *law, *body, *others)
 
 
 def moved(dim):
@@ -110,6 +112,32 @@ def check_column_for_good(dim, quadrature, degree):
             close("snap", row["change_factor"], snap, 1e-12, 1.)
         else:
             check("one change, the snap", row["change_factor"] == "")
+
+
+def check_broken_but_closed(dim, quadrature, degree):
+    """Where bonds broke for good and the gap is closed again, nodes have a state of their own.
+    Those that soften from the opening M on, until 6 M, hold t = k d + a M (6 M - d) / (5 M): at
+    the opening d = 2 M they have lost 0.6 of their stiffness, and are contact when closed."""
+    soft = ["Contact law/Law=curve", f"Contact law/Curve=0:0, {M}:{a * M}, {6. * M}:0"]
+    for heals, law, factors, state, damage in (
+            (False, WINKLER, "2.8, 0", "broken but closed", 1.),
+            (False, WINKLER, "2.8, -1", "broken but closed", 1.),
+            (False, WINKLER, "2.8, 0.1", "broken", 1.),
+            (False, WINKLER, "1.9, 0", "contact", 0.),
+            (False, soft, "3.2, 0", "broken but closed", 1.),
+            (False, soft, "2.2, -1", "contact", 0.6),
+            (True, WINKLER, "2.8, 0.1", "bonded", 0.)):
+        scenes.section(f"Unloaded in {dim}D, {quadrature}, {factors}, heals: {heals}, {law[0]}")
+        result = column(dim, f"Mesh/Degree={degree}", "Contact law/Quadrature=" + quadrature,
+                        NO_GLOBAL, f"Load path/Factors={factors}",
+                        f"Load path/Bonds heal={str(heals).lower()}", law=law)
+        check("all nodes", {row["state"] for row in result["profile"]} == {state}
+              and result["bond_states"][state] == len(result["profile"]) > 3,
+              result["bond_states"])
+        for row in result["profile"]:
+            close("damage", row["damage"], damage, 1e-9, 1.)
+        close("contact part", result["path"][-1]["contact_part"],
+              state in ("contact", "broken but closed"), 1e-12, 1.)
 
 
 def check_moved_column(dim, name, n_steps, *entries):
@@ -519,6 +547,7 @@ scenes.together(*(("", *check) for check in (
         [check_column_arc, False], [check_column_arc, True])),
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
+    [check_broken_but_closed, 2, "nodal", 1], [check_broken_but_closed, 3, "gauss 2", 2],
     [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
     [check_parts], [check_refined], [check_cells_at_edge],
     [check_estimate_for_good], [check_search_beside_path])))

@@ -17,7 +17,8 @@ check, close = scenes.check, scenes.close
 PLANE = ["Mesh/Cells=10, 2", "Loads/Traction top=0.1; if(x < 0.2, 0.69, -0.345)"]
 SOLID = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.08",
          "Loads/Traction top=0.1; if(x < 0.2, 0.69, -0.345); 0.05"]
-STATES = ["contact", "bonded", "kink", "broken", "free", "held"]
+STATES = {"broken but closed": -1, "contact": 0, "bonded": 1, "kink": 2, "broken": 3, "free": 4,
+          "held": 5}
 
 
 def near(name, a, b, scale=1.):
@@ -73,7 +74,7 @@ def check_contact(folder, profile, dim, n_faces):
         i = corners * cell  # the vertex that the share belongs to
         row = profile.get(place(contact, i), {"state": "held", "u_nu": 0.})
         density = at_points["normal_force_density"]
-        check("state", state == STATES.index(row["state"]), (place(contact, i), row))
+        check("state", state == STATES[row["state"]], (place(contact, i), row))
         near("u_nu", at_points["u_nu"][i], row["u_nu"], 1e-3)
         if len(row) > 2:
             near("force", density[i], row["normal_force_density"])
@@ -128,6 +129,13 @@ check_files("plane", 2, 80, 53, 10, *plane_strain)
 # Fields of more than one block.
 check_files("fine", 2, 40960, 20833, 320, *plane_strain, "Mesh/Cells=320, 32")
 check_files("solid", 3, 384, 144, 64, *SOLID, "Mesh/Cells=8, 1, 2")
+closed, _, profile = solve("closed", *PLANE, "Load path/Factors=9, 0", "Load path/Bonds heal=false",
+                           "Output/Load path contact VTU=true")
+check_contact(closed, profile, 2, 10)
+states = [{*Piece(closed / "load_path" / f"contact-0000{step}.vtu").in_cells["bond_state"]}
+          for step in (1, 2)]
+check("broken, and closed again", 3 in states[0] and -1 not in states[0]
+      and -1 in states[1] and not states[1] & {1, 3}, states)
 _, _, sliding = solve("sliding", *PLANE, "Contact law/Tangential displacement=free")
 check("no tangential forces", not any(row["tangential_force_x"] for row in sliding.values()))
 check_quadratic("quadratic plane", 2, 22, 185, "80 triangles, 0.4 x 0.04, quadratic displacements\n",

@@ -18,9 +18,10 @@ namespace Debond
   /// The state of the bond and the foundation at a contact node, by its number
   /// in files. Branches of a law that have other names than these have the
   /// numbers that follow.
-  enum class BondState : unsigned int
+  enum class BondState : int
   {
-    contact, ///< s = 0
+    broken_but_closed = -1, ///< s = 0, where bonds broke for good
+    contact,                ///< s = 0
     bonded,
     kink, ///< between two branches
     broken,
@@ -28,7 +29,8 @@ namespace Debond
     held  ///< a clamped vertex, which is no contact node
   };
 
-  /// The names of all states that nodes can have with this law, by number.
+  /// The names of all states that nodes can have with this law, by number, the
+  /// first of which is -1.
   std::vector<std::string>
   state_names(const AdhesiveLaw &law);
 
@@ -78,7 +80,7 @@ namespace Debond
     /// The states in the order of ContactBoundary::nodes.
     std::vector<ContactNodeState> nodes;
 
-    std::vector<std::string> state_names; ///< by BondState
+    std::vector<std::string> state_names; ///< see state_names()
 
     /**
      * Largest distance to the contact law over all contact nodes: the least
@@ -170,8 +172,8 @@ namespace Debond
   /// bonds that are as @p adhesion has them.
   ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
-  /// largest |u_nu|) of 0 and the kinks count as
-  /// contact and kink for ContactNodeState::state (and for nothing else). So
+  /// largest |u_nu|, also that which bonds remember) of 0 and the kinks count
+  /// as contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   ///
   /// All ranks that share the problem have to call it; all have the result.
