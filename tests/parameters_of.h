@@ -51,6 +51,7 @@ parameters_of_file(const std::string &scene, const Values &values = {})
     Debond::read_scene(scene, table);
   for (const std::string &value : values)
     table.assign(value);
+  table.evaluate();
   return table.parameters(scene.empty() ? "scene.prm" : scene);
 }
 

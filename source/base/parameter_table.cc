@@ -81,6 +81,13 @@ namespace Debond
 
 
 
+    /// They look like blanks, and come with texts from word processors.
+    const std::string spaces_of_unicode =
+      "\xc2\xa0|\xe2\x80\xaf|\xe2\x80\x89|\xe2\x80\x8b";
+
+    /// A file with more lines that cannot be read is something else.
+    constexpr unsigned int most_unread = 5;
+
     /// Returns the beginning of the paths of the members of a family.
     std::string
     prefix_of(const std::string &family)
@@ -132,8 +139,10 @@ namespace Debond
         {"visc|creep|damping", "viscosity"},
         {"density|\\bmass|veloc|accelerat|time step", "inertia"},
         {"(large|finite) (displ|strain|rot|def)", "large displacements"},
-        {"orthotrop|anisotrop", "directions of the material"},
-        {"soften|damage|fatigue", "damage"}};
+        {"(tangential|shear) (stiff|streng|energ)|mode (ii|2)",
+         "bonds that shear"},
+        {"penalt", "penalty: contact is exact"},
+        {"fatigue", "fatigue"}};
       for (const auto &[words, what] : absent)
         if (std::regex_search(path, std::regex(words, std::regex::icase)))
           return "; Debond has no " + what +
@@ -148,7 +157,9 @@ namespace Debond
       const auto has = [](const std::string &word, const std::string &part) {
         return part.size() > 2 && word.find(part) != std::string::npos;
       };
-      const auto [section, name] = split(path);
+      // Many call bonds cohesive.
+      const auto [section, name] =
+        split(boost::ireplace_all_copy(path, "cohesive", "bond"));
       std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
       std::vector<std::string>                                       siblings;
       for (const std::string &other : known)
@@ -271,6 +282,50 @@ namespace Debond
                          suggestion(shortened(path), known));
         return;
       }
+    Entry &entry = entries.at(path);
+    entry.value  = value;
+    entry.set_at = location;
+    set_paths.push_back(path);
+    for (auto &[unused, file] : read_files)
+      if (file.is_open)
+        file.values[path] = {{value, location}};
+  }
+
+
+
+  void
+  ParameterTable::take_values(
+    const std::function<std::string(const std::string &)> &evaluate)
+  {
+    std::set<std::string> taken;
+    for (const std::string &path : set_paths)
+      if (taken.insert(path).second)
+        {
+          Entry            &entry      = entries.at(path);
+          const std::string written    = entry.value;
+          const std::string evaluated  = evaluate(written);
+          const bool        is_checked = !entry.pattern.allows_any_text();
+          std::string reason = take(path, is_checked ? evaluated : written);
+          if (!reason.empty() && evaluated != written)
+            reason = take(path, is_checked ? written : evaluated);
+          entry.is_rejected = !reason.empty();
+          if (!entry.is_rejected)
+            continue;
+          if (evaluated == written && is_checked &&
+              written.find_first_of("*/^(") != std::string::npos)
+            reason += "; expressions are of numbers and Constants";
+          errors.push_back(entry.set_at + ": " + path + " = " +
+                           shortened(written) + ": " + reason);
+          entry.value = entry.default_value;
+        }
+    set_paths.clear();
+  }
+
+
+
+  std::string
+  ParameterTable::take(const std::string &path, const std::string &value)
+  {
     Entry      &entry = entries.at(path);
     std::string reason;
     in_section(path, [&](const std::string &name) {
@@ -289,14 +344,7 @@ namespace Debond
           reason = error.what();
         }
     });
-    entry.set_at      = location;
-    entry.is_rejected = !reason.empty();
-    for (auto &[unused, file] : read_files)
-      if (file.is_open)
-        file.values[path] = {{value, location}};
-    if (entry.is_rejected)
-      errors.push_back(location + ": " + path + " = " + shortened(value) +
-                       ": " + reason);
+    return reason;
   }
 
 
@@ -318,7 +366,7 @@ namespace Debond
     std::map<std::string, std::string>               set_here;
 
     std::string  text;
-    unsigned int n_lines = 0, first_line = 1;
+    unsigned int n_lines = 0, first_line = 1, n_unread = 0;
     for (std::string line; std::getline(input, line);)
       {
         // Some editors begin a file with the mark of UTF-8.
@@ -339,7 +387,12 @@ namespace Debond
           boost::to_lower_copy(text.substr(0, text.find(' ')));
         const std::string rest   = trim(text.substr(keyword.size()));
         const std::size_t equals = rest.find('=');
-        if (keyword == "subsection" && !rest.empty())
+        if (std::smatch match;
+            std::regex_search(text, match, std::regex(spaces_of_unicode)))
+          errors.push_back(
+            at + ": the space behind '" + match.prefix().str() +
+            "' is a no-break space of Unicode; put a blank there");
+        else if (keyword == "subsection" && !rest.empty())
           {
             const std::string path = prefix + rest;
             open.emplace_back(path, at);
@@ -364,8 +417,13 @@ namespace Debond
           }
         else if (keyword == "include" && !rest.empty() && section.empty())
           read_included(rest, file, at);
+        else if (!text.empty() && ++n_unread > most_unread)
+          {
+            errors.push_back(at + ": nor can what follows; is this a scene?");
+            return;
+          }
         else if (!text.empty())
-          errors.push_back(at + ": cannot read '" + text +
+          errors.push_back(at + ": cannot read '" + shortened(text) +
                            "': expected 'subsection NAME', 'set NAME = "
                            "VALUE', 'end' or, outside of subsections, "
                            "'include FILE'");
@@ -498,6 +556,16 @@ namespace Debond
     else if (!names.empty())
       notes.push_back("no effect of " +
                       join({names.begin(), names.end()}, ", ") + ": " + reason);
+  }
+
+
+
+  void
+  ParameterTable::print_json(std::ostream &out)
+  {
+    for (const auto &[path, unused] : families)
+      declare_member(prefix_of(path) + "NAME");
+    handler.print_parameters(out, dealii::ParameterHandler::JSON);
   }
 
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_tools.h>
+
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/owned_cells.h>
@@ -99,8 +101,7 @@ namespace Debond
 
 
   std::vector<std::string>
-  plausibility_notes(const bool           has_load,
-                     const LargestValues &largest,
+  plausibility_notes(const LargestValues &largest,
                      const double         faces_in_softening_zone)
   {
     std::vector<std::string> notes;
@@ -108,8 +109,6 @@ namespace Debond
       notes.push_back(words(std::setprecision(2), parts...));
     };
 
-    if (!has_load)
-      add("the scene has no load");
     if (largest.gradient > largest_small_gradient)
       add("displacement gradients up to ",
           largest.gradient,
@@ -127,6 +126,39 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<std::string>
+  bond_notes(const dealii::Triangulation<dim>    &body,
+             const std::vector<ContactNodeState> &nodes)
+  {
+    double least_threshold = std::numeric_limits<double>::infinity();
+    bool   are_all_broken  = true;
+    for (const ContactNodeState &node : nodes)
+      if (node.bond_stiffness > 0.)
+        {
+          const double gap = node.u_nu - node.s;
+          least_threshold  = std::min(least_threshold, node.bond_threshold);
+          are_all_broken &= gap >= node.bond_threshold;
+        }
+    if (!std::isfinite(least_threshold))
+      return {};
+    if (are_all_broken)
+      return {"all bonds are broken at rest: the initial gap is beyond their "
+              "threshold"};
+    const double size = dealii::GridTools::diameter(body);
+    if (least_threshold > size)
+      return {words("no bond can break: the least threshold is ",
+                    least_threshold,
+                    ", the body's size ",
+                    size,
+                    "; are they in the same unit?")};
+    return {};
+  }
+
+
+
+  template decltype(bond_notes<2>)              bond_notes<2>;
+  template decltype(bond_notes<3>)              bond_notes<3>;
   template decltype(faces_in_softening_zone<2>) faces_in_softening_zone<2>;
   template decltype(faces_in_softening_zone<3>) faces_in_softening_zone<3>;
   template decltype(largest_values<2>)          largest_values<2>;

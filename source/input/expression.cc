@@ -2,12 +2,14 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/base/text.h>
 #include <debond/input/expression.h>
 
 #include <boost/io/ios_state.hpp>
 
 #include <cctype>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -61,20 +63,28 @@ namespace Debond
 
   template <int dim>
   std::shared_ptr<const dealii::Function<dim>>
-  make_function(const std::string                   &expressions,
-                const std::map<std::string, double> &constants,
-                const unsigned int                   n_components)
+  make_function(const std::string &expressions,
+                const Constants   &constants,
+                const unsigned int n_components,
+                const std::string &variables)
   {
     const std::vector<std::string> components =
       dealii::Utilities::split_string_list(expressions, ';');
     for (const std::string &component : components)
-      check_sense(component);
+      {
+        if (component.find_first_of("0123456789_abcdefghijklmnopqrstuvwxyz"
+                                    "ABCDEFGHIJKLMNOPQRSTUVWXYZ") ==
+            std::string::npos)
+          throw std::invalid_argument("'" + component +
+                                      "' is no expression; 0 stands for none");
+        check_sense(component);
+      }
     if (components.size() != n_components)
       throw std::invalid_argument("expected " + std::to_string(n_components) +
                                   " components separated by ';', but found " +
                                   std::to_string(components.size()));
 
-    std::map<std::string, double> all_constants = constants;
+    Constants all_constants = constants;
     all_constants.emplace("pi", dealii::numbers::PI);
 
     try
@@ -84,7 +94,9 @@ namespace Debond
         const auto                       function =
           std::make_shared<dealii::FunctionParser<dim>>(n_components);
         function->initialize(
-          dealii::FunctionParser<dim>::default_variable_names(),
+          variables.empty() ?
+            dealii::FunctionParser<dim>::default_variable_names() :
+            variables,
           expressions,
           all_constants);
         // FunctionParser parses when it is evaluated first.
@@ -113,6 +125,96 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Returns the value of an expression without a place. Throws
+    /// std::invalid_argument.
+    double
+    constant_value(const std::string &expression, const Constants &constants)
+    {
+      const double value =
+        make_function<1>(expression, constants, 1, "_")->value({});
+      if (!std::isfinite(value))
+        throw std::invalid_argument(expression + " is not finite");
+      return value;
+    }
+  } // namespace
+
+
+
+  Constants
+  evaluate_constants(std::map<std::string, std::string> expressions)
+  {
+    Constants constants;
+    while (!expressions.empty())
+      {
+        // One that uses others has a value as soon as they do.
+        std::string       name, reason;
+        const std::size_t n_left = expressions.size();
+        for (auto it = expressions.begin(); it != expressions.end();)
+          try
+            {
+              const double value   = constant_value(it->second, constants);
+              constants[it->first] = value;
+              it                   = expressions.erase(it);
+            }
+          catch (const std::invalid_argument &error)
+            {
+              name   = it->first;
+              reason = error.what();
+              ++it;
+            }
+        if (expressions.size() == n_left)
+          throw EntryError(name, reason);
+      }
+    return constants;
+  }
+
+
+
+  std::string
+  with_values(const std::string &list, const Constants &constants)
+  {
+    const auto with_value = [&constants](const std::string &item) {
+      const std::string text = dealii::Utilities::trim(item);
+      double            value;
+      // Most words are none, which muParser would take long to say.
+      if (read_number(text, value) ||
+          (text.find_first_of("+-*/^(") == std::string::npos &&
+           constants.count(text) == 0 && text != "pi"))
+        return item;
+      try
+        {
+          value = constant_value(text, constants);
+        }
+      catch (const std::invalid_argument &)
+        {
+          return item;
+        }
+      const bool is_whole = value == std::round(value) && std::abs(value) < 1e9;
+      return item.substr(0, item.find(text)) +
+             (is_whole ? std::to_string(std::lround(value)) :
+                         shortest_text(value));
+    };
+    std::string  result, item;
+    unsigned int n_open = 0; // brackets
+    for (const char c : list)
+      {
+        n_open += (c == '(') - (c == ')');
+        if (n_open > 0 || std::string(",;:").find(c) == std::string::npos)
+          item += c;
+        else
+          {
+            result += with_value(item) + c;
+            item.clear();
+          }
+      }
+    return result + with_value(item);
+  }
+
+
+
+  template decltype(make_function<1>) make_function<1>;
   template decltype(make_function<2>) make_function<2>;
   template decltype(make_function<3>) make_function<3>;
 } // namespace Debond

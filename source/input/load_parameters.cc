@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/base/text.h>
-#include <debond/input/expression.h>
+#include <debond/input/bad_input.h>
 #include <debond/input/load_parameters.h>
+
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -29,8 +32,7 @@ namespace Debond
 
     template <int dim>
     void
-    add_material_constants(const Material                &material,
-                           std::map<std::string, double> &constants)
+    add_material_constants(const Material &material, Constants &constants)
     {
       if (material.orthotropy)
         return;
@@ -42,31 +44,22 @@ namespace Debond
 
 
 
-    const std::string list_of_constants =
-      "a list NAME=NUMBER, NAME=NUMBER, ... of names other than x, y and z";
-
-
+    const std::string constants_section = "Constants/";
+    const std::string constants_list    = "Loads/Constants";
 
     /// Reads "a = 1, b = 2". Throws std::invalid_argument.
-    std::map<std::string, double>
-    parse_constants(const std::string &text)
+    std::map<std::string, std::string>
+    parse_constants(const std::string &list)
     {
-      std::map<std::string, double> constants;
+      std::map<std::string, std::string> texts;
       for (const std::string &item :
-           dealii::Utilities::split_string_list(text, ','))
+           dealii::Utilities::split_string_list(list, ','))
         {
-          const std::size_t equals = item.find('=');
-          const std::string name =
-            dealii::Utilities::trim(item.substr(0, equals));
-          double value;
-          if (equals == std::string::npos || !is_constant_name(name) ||
-              !read_number(dealii::Utilities::trim(item.substr(equals + 1)),
-                           value) ||
-              !constants.emplace(name, value).second)
-            throw std::invalid_argument("expected " + list_of_constants +
-                                        comma_hint(text));
+          const auto parts = dealii::Utilities::split_string_list(item, '=');
+          if (parts.size() != 2 || !texts.emplace(parts[0], parts[1]).second)
+            throw std::invalid_argument(item);
         }
-      return constants;
+      return texts;
     }
 
 
@@ -74,8 +67,7 @@ namespace Debond
     /// Says whether a force is the same everywhere, as one without a place is.
     template <int dim>
     bool
-    is_constant(const std::string                   &expression,
-                const std::map<std::string, double> &constants)
+    is_constant(const std::string &expression, const Constants &constants)
     {
       const auto         force = make_function<dim>(expression, constants);
       dealii::Point<dim> elsewhere;
@@ -146,15 +138,85 @@ namespace Debond
       Pattern("nothing, or an expression"),
       "The change of temperature from the state without stresses, an expression as in the body force; see Material/Thermal expansion",
       "temperature");
+  }
+
+
+
+  void
+  bind_constants(std::map<std::string, std::string> &texts,
+                 ParameterTable                     &table)
+  {
+    table.bind_family(
+      constants_section,
+      texts,
+      Pattern("a number, or an expression of other constants"),
+      "A constant of this name, which numbers and expressions of all entries may use, such as 'Lengths = 2*a, a'; the DefineConstant of a .geo file takes it too. pi is known, and in expressions of the place, unless they are given here, the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
+      "those that the entries need");
     table.declare(
-      "Loads/Constants",
+      constants_list,
       "",
-      Pattern(list_of_constants),
-      "Names that the expressions may use, such as 'q=0.69, L=0.4'. pi is known, and unless they are given here, so are the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
-      "those that the expressions need",
-      [&loads](const std::string &text) {
-        loads.constants = parse_constants(text);
-      });
+      Pattern("a list NAME=NUMBER, NAME=NUMBER, ... of names other "
+              "than x, y and z",
+              [](const std::string &text) {
+                try
+                  {
+                    parse_constants(text);
+                    return true;
+                  }
+                catch (const std::invalid_argument &)
+                  {
+                    return false;
+                  }
+              }),
+      "Constants in one line, such as 'q=0.69, L=0.4'; those of the section Constants come before them",
+      "those that the entries need",
+      [](const std::string &) {});
+  }
+
+
+
+  Constants
+  constants_of(const ParameterTable &table)
+  {
+    std::map<std::string, std::string> texts, entries;
+    try
+      {
+        texts = parse_constants(table.get(constants_list));
+      }
+    catch (const std::invalid_argument &)
+      {
+        // It is said when the entry is taken.
+      }
+    for (const auto &[name, unused] : texts)
+      entries[name] = constants_list;
+    const auto locations = table.locations();
+    for (const auto &[path, unused] : locations)
+      if (boost::starts_with(path, constants_section))
+        {
+          const std::string name = path.substr(constants_section.size());
+          entries[name]          = path;
+          texts[name]            = table.get(path);
+        }
+    for (const auto &[name, entry] : entries)
+      if (!is_constant_name(name))
+        throw BadInput(
+          {locations.at(entry) + ": " + entry +
+           ": the name of a constant has letters, digits and _, begins with no digit, and is not x, y or z"});
+    try
+      {
+        return evaluate_constants(texts);
+      }
+    catch (const EntryError &error)
+      {
+        const std::string &entry = entries.at(error.entry);
+        throw BadInput({words(locations.at(entry),
+                              ": ",
+                              entry,
+                              " = ",
+                              table.get(entry),
+                              ": ",
+                              error.what())});
+      }
   }
 
 
@@ -207,12 +269,12 @@ namespace Debond
 
 
   void
-  check_expression(const std::string                   &path,
-                   const std::string                   &expression,
-                   const unsigned int                   dimension,
-                   const unsigned int                   n_components,
-                   const std::map<std::string, double> &constants,
-                   ParameterTable                      &table)
+  check_expression(const std::string &path,
+                   const std::string &expression,
+                   const unsigned int dimension,
+                   const unsigned int n_components,
+                   const Constants   &constants,
+                   ParameterTable    &table)
   {
     if (expression.empty())
       return;
@@ -225,7 +287,7 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        table.reject(path, error.what(), {"Dimension", "Loads/Constants"});
+        table.reject(path, error.what(), {"Dimension"});
       }
   }
 

@@ -29,7 +29,8 @@ namespace Debond
       table.declare(
         path,
         join({shortest_text(variable[0]), shortest_text(variable[1])}, ", "),
-        Pattern("2 or 3 times " + pattern.description(),
+        Pattern("2 or 3 times " + pattern.description() +
+                  ", separated by commas",
                 [list = dealii::Patterns::List(pattern, 2, 3)](
                   const std::string &text) { return list.match(text); }),
         documentation,
@@ -55,12 +56,12 @@ namespace Debond
       for (const std::string path : {"Mesh/Lengths", "Mesh/Cells"})
         if (dealii::Utilities::split_string_list(table.get(path), ',').size() !=
             dimension)
-          table.reject(path,
-                       "expected " + std::to_string(dimension) +
-                         " values for Dimension = " +
-                         std::to_string(dimension) +
-                         comma_hint(table.get(path)),
-                       {"Dimension"});
+          table.reject(
+            path,
+            "expected " + std::to_string(dimension) +
+              " values for Dimension = " + std::to_string(dimension) +
+              (path == "Mesh/Cells" ? "" : comma_hint(table.get(path))),
+            {"Dimension"});
     }
   } // namespace
 
@@ -128,7 +129,7 @@ namespace Debond
     table.bind(
       "Mesh/Arguments",
       body.arguments,
-      Pattern("a text"),
+      Pattern("a text", [](const std::string &) { return true; }),
       "All arguments of the generator, separated by colons, coordinates by commas, as in '0, 0 : 1 : false'",
       "those of the generator");
     table.bind(
@@ -145,9 +146,9 @@ namespace Debond
     /// Throws EntryError where the condition has no value.
     template <int dim>
     std::function<bool(const dealii::Point<dim> &)>
-    make_condition(const std::string                   &entry,
-                   const std::string                   &expression,
-                   const std::map<std::string, double> &constants)
+    make_condition(const std::string &entry,
+                   const std::string &expression,
+                   const Constants   &constants)
     {
       return [entry, function = make_function<dim>(expression, constants, 1)](
                const dealii::Point<dim> &point) {
@@ -167,10 +168,10 @@ namespace Debond
     /// Throws std::invalid_argument if the text is no cut of this body.
     template <int dim>
     Cut<dim>
-    make_cut(const Body<dim>                     &body,
-             const std::string                   &text,
-             const double                         degrees,
-             const std::map<std::string, double> &constants)
+    make_cut(const Body<dim>   &body,
+             const std::string &text,
+             const double       degrees,
+             const Constants   &constants)
     {
       Cut<dim> cut;
       cut.text                     = text;
@@ -197,7 +198,8 @@ namespace Debond
                    ", but " + join({regions.begin(), regions.end()}, ", ")));
           return cut;
         }
-      if (axis >= dim || sides[0].size() != 1 || !read_number(sides[1], place))
+      if (axis >= dim || sides[0].size() != 1 ||
+          !read_number(with_values(sides[1], constants), place))
         throw std::invalid_argument(text +
                                     ": expected a coordinate and a number");
       const dealii::Tensor<2, dim> rotation = rotation_matrix<dim>(degrees);
@@ -225,10 +227,10 @@ namespace Debond
     /// Throws std::invalid_argument if the text is no part of this body.
     template <int dim>
     Part<dim>
-    make_part(const Body<dim>                     &body,
-              const std::string                   &name,
-              const std::string                   &text,
-              const std::map<std::string, double> &constants)
+    make_part(const Body<dim>   &body,
+              const std::string &name,
+              const std::string &text,
+              const Constants   &constants)
     {
       const std::set<std::string> boundaries = body.boundaries();
       if (boundaries.count(name) > 0 || body.regions().count(name) > 0)
@@ -268,7 +270,7 @@ namespace Debond
     std::shared_ptr<BodyDescription>
     make_body_with_pieces(const BodyParameters                     &parameters,
                           const std::map<std::string, std::string> &parts,
-                          const std::map<std::string, double>      &constants,
+                          const Constants                          &constants,
                           const std::string                        &entry,
                           ParameterTable                           &table)
     {
@@ -301,7 +303,7 @@ namespace Debond
       });
       std::vector<Part<dim>> made;
       for (const auto &part : parts)
-        attempt("Parts/" + part.first, {"Dimension", "Loads/Constants"}, [&]() {
+        attempt("Parts/" + part.first, {"Dimension"}, [&]() {
           made.push_back(make_part(*body, part.first, part.second, constants));
         });
       body->parts = made;
@@ -329,7 +331,7 @@ namespace Debond
             const unsigned int                        dimension,
             BodyParameters                            parameters,
             const std::map<std::string, std::string> &parts,
-            const std::map<std::string, double>      &constants,
+            const Constants                          &constants,
             ParameterTable                           &table)
   {
     using Source             = BodyParameters::Source;

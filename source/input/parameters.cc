@@ -8,6 +8,8 @@
 #include <debond/input/probe_parameters.h>
 #include <debond/input/solver_parameters.h>
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -70,6 +72,7 @@ namespace Debond
 
   SceneTable::SceneTable()
   {
+    bind_constants(constants, *this);
     bind("Dimension", p.dimension, whole_number(2, 3), "Space dimension");
     bind_mesh(body, *this);
     bind(
@@ -94,6 +97,17 @@ namespace Debond
 
 
   void
+  SceneTable::evaluate()
+  {
+    p.loads.constants = body.constants = constants_of(*this);
+    take_values([this](const std::string &text) {
+      return with_values(text, p.loads.constants);
+    });
+  }
+
+
+
+  void
   read_scene(const std::string &scene, ParameterTable &table)
   {
     // Output goes into folders of this name.
@@ -107,6 +121,23 @@ namespace Debond
     if (!input || std::filesystem::is_directory(scene) ||
         std::filesystem::is_character_file(scene))
       throw BadInput({scene + ": cannot be read as a scene file"});
+    const std::string ending = std::filesystem::path(scene).extension();
+    if (input.peek() == '{' || ending == ".json")
+      throw BadInput({scene + ": this is JSON; a scene is a .prm file, as "
+                              "debond --print-parameters prints it"});
+    for (const std::string mesh : {".geo",
+                                   ".msh",
+                                   ".step",
+                                   ".stp",
+                                   ".stl",
+                                   ".unv",
+                                   ".inp",
+                                   ".vtu",
+                                   ".brep"})
+      if (boost::iequals(ending, mesh))
+        throw BadInput(
+          {scene +
+           ": this is a mesh or a geometry; a scene (.prm) has it as Mesh/File, with Mesh/Source = file"});
     table.read(input, scene);
   }
 

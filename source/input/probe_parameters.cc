@@ -66,8 +66,10 @@ namespace Debond
             if (probe.kind == Kind::mean)
               known.insert(regions.begin(), regions.end());
             throw std::invalid_argument(
-              "the body has no " + probe.piece + ", but " +
-              join({known.begin(), known.end()}, ", "));
+              "the body has no " + probe.piece + ", " +
+              (known.empty() ?
+                 "and no names at all; Parts gives names" :
+                 "but " + join({known.begin(), known.end()}, ", ")));
           }
         catch (const std::invalid_argument &error)
           {
@@ -84,7 +86,8 @@ namespace Debond
     table.bind_family(
       "Probes/",
       probes,
-      Pattern("a point, 'mean NAME' or 'force NAME'"),
+      Pattern("a point, 'mean NAME' or 'force NAME'",
+              [](const std::string &) { return true; }),
       "A vector that the log, summary.json and load_path.csv have by this name: the displacement at a point, such as '0.4, 0.02', its mean over a boundary, a region or a part ('mean right'), or the force that supports and foundation exert on the body at a boundary or a part of it ('force left')");
   }
 

@@ -51,11 +51,11 @@ namespace Debond
 
 
   void
-  check_supports(const SupportParameters             &supports,
-                 const BodyDescription               &body,
-                 const unsigned int                   dimension,
-                 const std::map<std::string, double> &constants,
-                 ParameterTable                      &table)
+  check_supports(const SupportParameters &supports,
+                 const BodyDescription   &body,
+                 const unsigned int       dimension,
+                 const Constants         &constants,
+                 ParameterTable          &table)
   {
     check_names("Boundary conditions/Roller boundaries",
                 supports.rollers,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/append.h>
 #include <debond/base/atomic_file.h>
 #include <debond/base/memory.h>
 #include <debond/base/text.h>
@@ -22,6 +23,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -79,6 +81,30 @@ namespace Debond
         else if (line.rfind("$NO", 0) == 0) // of version 1
           return true;
       return false;
+    }
+
+
+
+    /// Throws std::invalid_argument if a .geo file sets one of the constants
+    /// itself, which would silently count.
+    void
+    check_constants(const std::string                   &file_name,
+                    const std::map<std::string, double> &constants)
+    {
+      if (!boost::iends_with(file_name, ".geo"))
+        return;
+      std::ifstream input = open_plain_file(file_name);
+      for (std::string line; std::getline(input, line);)
+        if (std::smatch match;
+            std::regex_search(line, match, std::regex("^\\s*(\\w+)\\s*=[^=]")))
+          if (constants.count(match[1]) > 0)
+            throw std::invalid_argument(
+              words(file_name,
+                    ": it sets ",
+                    match[1],
+                    ", a constant of the scene, itself; write DefineConstant[ ",
+                    boost::trim_copy(line.substr(0, line.find(';'))),
+                    " ]; there, which takes the scene's value"));
     }
 
 
@@ -204,13 +230,21 @@ namespace Debond
     /// Has Gmsh read a file, or mesh its geometry. Throws
     /// std::invalid_argument, or what Gmsh throws.
     GmshFile
-    read_by_gmsh(const std::string &file_name,
-                 const bool         is_old,
-                 const int          dim,
-                 const double       size,
-                 const double       memory)
+    read_by_gmsh(const std::string                   &file_name,
+                 const bool                           is_old,
+                 const int                            dim,
+                 const double                         size,
+                 const double                         memory,
+                 const std::map<std::string, double> &constants)
     {
-      gmsh::initialize(0, nullptr, false);
+      std::vector<std::string> arguments = {"debond"};
+      for (const auto &[name, value] : constants)
+        append<std::string>({"-setnumber", name, shortest_text(value)},
+                            arguments);
+      std::vector<char *> words;
+      for (std::string &argument : arguments)
+        words.push_back(argument.data());
+      gmsh::initialize(static_cast<int>(words.size()), words.data(), false);
       gmsh::option::setNumber("General.Terminal", 0);
       gmsh::logger::start();
       // Gmsh knows groups of entities. In old files elements of one entity may
@@ -262,18 +296,19 @@ namespace Debond
 
     /// Writes an error, or an empty one and what Gmsh has read, to a pipe.
     void
-    send_what_gmsh_reads(std::FILE *const   pipe,
-                         const std::string &file_name,
-                         const bool         is_old,
-                         const int          dim,
-                         const double       size,
-                         const double       memory)
+    send_what_gmsh_reads(std::FILE *const                     pipe,
+                         const std::string                   &file_name,
+                         const bool                           is_old,
+                         const int                            dim,
+                         const double                         size,
+                         const double                         memory,
+                         const std::map<std::string, double> &constants)
     {
       GmshFile    file;
       std::string error;
       try
         {
-          file = read_by_gmsh(file_name, is_old, dim, size, memory);
+          file = read_by_gmsh(file_name, is_old, dim, size, memory, constants);
         }
       catch (const std::invalid_argument &exception)
         {
@@ -303,12 +338,14 @@ namespace Debond
 
 
   GmshFile
-  read_gmsh_file(const std::string &file_name,
-                 const int          dim,
-                 const double       size,
-                 const double       memory)
+  read_gmsh_file(const std::string                   &file_name,
+                 const int                            dim,
+                 const double                         size,
+                 const double                         memory,
+                 const std::map<std::string, double> &constants)
   {
     const bool is_old = is_old_msh(file_name);
+    check_constants(file_name, constants);
     // Gmsh crashes on some broken files, and it changes the locale, the
     // environment and the number of threads: it gets a process of its own.
     int         ends[2];
@@ -333,8 +370,13 @@ namespace Debond
         const int nowhere = open("/dev/null", O_WRONLY);
         dup2(nowhere, STDOUT_FILENO);
         dup2(nowhere, STDERR_FILENO);
-        send_what_gmsh_reads(
-          fdopen(ends[1], "wb"), file_name, is_old, dim, size, memory);
+        send_what_gmsh_reads(fdopen(ends[1], "wb"),
+                             file_name,
+                             is_old,
+                             dim,
+                             size,
+                             memory,
+                             constants);
         _exit(0);
       }
     close(ends[1]);

@@ -37,11 +37,10 @@ namespace Debond
     public:
       GmshMesh(const std::string &file_name,
                const double       scale,
-               const double       size,
-               const double       memory)
+               const GmshFile    &file)
         : file_name(file_name)
       {
-        read(scale, read_gmsh_file(file_name, dim, size / scale, memory));
+        read(scale, file);
         check_cells();
         cut_cells();
         take_faces();
@@ -532,12 +531,15 @@ namespace Debond
 
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string &file_name,
-                 const double       scale,
-                 const double       size,
-                 const double       memory)
+  read_gmsh_mesh(const std::string                   &file_name,
+                 const double                         scale,
+                 const double                         size,
+                 const double                         memory,
+                 const std::map<std::string, double> &constants)
   {
-    return GmshMesh<dim>(file_name, scale, size, memory).make();
+    const GmshFile file =
+      read_gmsh_file(file_name, dim, size / scale, memory, constants);
+    return GmshMesh<dim>(file_name, scale, file).make();
   }
 
 

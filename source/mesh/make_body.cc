@@ -20,7 +20,8 @@ namespace Debond
       file = read_gmsh_mesh<dim>(parameters.file,
                                  parameters.scale,
                                  parameters.size,
-                                 parameters.memory);
+                                 parameters.memory,
+                                 parameters.constants);
     const auto make = [file, parameters](const unsigned int n_refinements) {
       auto source = std::make_unique<SourceMesh<dim>>();
       if (file)

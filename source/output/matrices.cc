@@ -180,7 +180,7 @@ namespace Debond
   std::vector<OutputFile>
   matrix_files(const Scene<dim> &scene, const bool wanted)
   {
-    // S and g together, once one of them is to be written.
+    // S, g and c_0 together, once one of them is to be written.
     const auto on_contact = std::make_shared<std::unique_ptr<Condensation>>();
     const auto condensed  = [&scene, on_contact]() -> const Condensation  &{
       if (*on_contact == nullptr)
@@ -223,6 +223,9 @@ namespace Debond
     add("g.mtx", [condensed](const std::string &path) {
       const Eigen::VectorXd &g = condensed().load();
       write_array<std::vector<double>>({{g.begin(), g.end()}}, path);
+    });
+    add("c_0.mtx", [condensed](const std::string &path) {
+      write_array<std::vector<double>>({{condensed().energy_at_zero()}}, path);
     });
     add("contact.mtx", [&scene](const std::string &path) {
       std::vector<double> rows;

@@ -264,8 +264,17 @@ namespace Debond
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    append(plausibility_notes(is_loaded,
-                              result.largest,
+    if (!is_loaded)
+      result.notes.push_back("the scene has no load");
+    else if (scene.problem().load(result.solve.load_factor).linfty_norm() == 0.)
+      result.notes.push_back(
+        "all loads act where the body cannot move: on supports, or along a "
+        "contact boundary with Contact law/Tangential displacement = fixed");
+    append(
+      bond_notes(scene.problem().unknowns().dof_handler().get_triangulation(),
+                 result.verification.nodes),
+      result.notes);
+    append(plausibility_notes(result.largest,
                               faces_in_softening_zone(scene.problem(),
                                                       scene.adhesion())),
            result.notes);

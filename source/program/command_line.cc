@@ -59,7 +59,9 @@ namespace Debond
         ("version", "print versions and the build type") //
         ("print-parameters",
          "print all parameters with their documentation as a scene, with the "
-         "defaults or the values of SCENE.prm and --set")   //
+         "defaults or the values of SCENE.prm and --set") //
+        ("print-parameters=json",
+         "likewise as JSON, for editors and scripts")       //
         ("validate", "read and check the scene, then stop") //
         ("set",
          po::value<std::vector<std::string>>()->value_name(
@@ -98,6 +100,12 @@ namespace Debond
                       .options(all)
                       .positional(positional)
                       .style(style)
+                      .extra_parser([](const std::string &word) {
+                        // A value could be taken for the scene otherwise.
+                        const std::string json = "print-parameters=json";
+                        return std::make_pair(word == "--" + json ? json : "",
+                                              std::string());
+                      })
                       .run(),
                     values);
           po::notify(values);
@@ -152,6 +160,7 @@ namespace Debond
         read_scene(scene, table);
       for (const std::string &assignment : assignments)
         table.assign(assignment);
+      table.evaluate();
     }
 
 
@@ -296,7 +305,8 @@ namespace Debond
       options.validate = values.count("validate") > 0;
       options.restart  = values.count("restart") > 0;
 
-      if (values.count("print-parameters") > 0)
+      const bool as_json = values.count("print-parameters=json") > 0;
+      if (values.count("print-parameters") > 0 || as_json)
         {
           if (scenes.size() > 1)
             throw BadInput({"--print-parameters is for one scene"});
@@ -306,7 +316,10 @@ namespace Debond
                      table);
           if (!table.errors.empty())
             throw BadInput(table.errors);
-          table.print(std::cout, true);
+          if (as_json)
+            table.print_json(std::cout);
+          else
+            table.print(std::cout, true);
           return ExitCode::success;
         }
       if (scenes.empty())

@@ -72,9 +72,9 @@ namespace Debond
     /// Components that a scene prescribes, "free" for those that it does not.
     template <int dim>
     PrescribedDisplacement<dim>
-    prescribed_displacement(const std::string                   &name,
-                            const std::string                   &text,
-                            const std::map<std::string, double> &constants)
+    prescribed_displacement(const std::string &name,
+                            const std::string &text,
+                            const Constants   &constants)
     {
       PrescribedDisplacement<dim> result;
       const DisplacementText      components(text);
@@ -160,9 +160,9 @@ namespace Debond
   make_supports(const ProblemParameters  &given,
                 const BoundaryConditions &conditions)
   {
-    const BoundaryNames                 &boundaries = conditions.names;
-    const std::map<std::string, double> &constants  = given.loads.constants;
-    Supports<dim>                        supports;
+    const BoundaryNames &boundaries = conditions.names;
+    const Constants     &constants  = given.loads.constants;
+    Supports<dim>        supports;
     // Clamps are conditions on boundaries; all other supports are values of
     // components, or of the normal one for rollers.
     for (const auto &[name, text] : given.supports.displacements)

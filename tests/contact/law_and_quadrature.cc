@@ -61,6 +61,7 @@ namespace
     table.assign("Contact law/Law=" + name);
     for (const std::string &entry : entries)
       table.assign("Contact law/" + entry);
+    table.take_values();
     std::vector<EnergyPiece> pieces = section.make_law(table).pieces;
     for (const std::string &line : table.errors)
       std::cout << line << std::endl;

@@ -101,6 +101,7 @@ namespace
     bind(section, table);
     for (const std::string &assignment : assignments)
       table.assign("A/" + assignment);
+    table.take_values();
     print(section);
     for (const std::string &line : table.errors)
       std::cout << line << std::endl;
@@ -121,6 +122,7 @@ namespace
         table.assign(assignment);
       try
         {
+          table.evaluate();
           const Parameters parameters = table.parameters("scene.prm");
           for (const std::string &note : parameters.notes)
             std::cout << "  " << note << std::endl;

@@ -29,6 +29,25 @@ grep -qE '^ +set Proximal weight += 0\.25 ' set.prm || fail "--set has no effect
 "$debond" set.prm --print-parameters >again.prm
 diff set.prm again.prm || fail "The printed parameters read differently."
 
+# JSON has all that the text has, of families a member NAME.
+"$debond" --print-parameters=json set.prm >parameters.json
+python3 - <<'CHECK' || fail "JSON"
+import json, re
+entries = {}
+def collect(section, path):
+    for name, value in section.items():
+        if "default_value" in value:
+            entries[path + name] = value
+        else:
+            collect(value, path + name + "/")
+collect(json.load(open("parameters.json")), "")
+assert entries["Solver/Euclidean bundle/Proximal weight"]["value"] == "0.25"
+assert "Units: force per area" in entries["Loads/Traction NAME"]["documentation"]
+text = open("set.prm").read()
+assert len(entries) == len(re.findall(r"^ *set |^# .*NAME$", text, re.M))
+CHECK
+rm parameters.json
+
 # An included file, named from the folder of the one that includes it, and what
 # is set again after it; errors name the file they are in.
 mkdir parts
@@ -88,6 +107,10 @@ STUDY
 expect_code 2 "$debond" study.prm
 grep -qx "debond: study.prm:1: unknown subsection Study; .*scripts/study" errors ||
   fail "a study: $(cat errors)"
+cp study.prm study.geo
+expect_code 2 "$debond" study.geo
+grep -qx "debond: study.geo: this is a mesh or a geometry; .* Mesh/File, .*" errors ||
+  fail "a geometry: $(cat errors)"
 expect_code 2 "$debond" --study study.prm
 grep -q "scripts/study" errors || fail "--study: $(cat errors)"
 printf '\xef\xbb\xbfset Dimension = 3\n' >mark.prm
@@ -101,7 +124,7 @@ grep -qE '^set Dimension += 3 ' log ||
 } >long.prm
 expect_code 2 "$debond" long.prm
 [ "$(wc -c <errors)" -lt 300 ] || fail "a message of $(wc -c <errors) letters"
-rm -r study.prm mark.prm long.prm parts including.prm included.prm
+rm -r study.* mark.prm long.prm parts including.prm included.prm
 
 # refused TEXT ARGUMENTS: soon, with little memory, and with a message in which
 # there are no control characters.

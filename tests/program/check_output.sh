@@ -71,6 +71,13 @@ notes --set "Loads/Traction right=0; 1" --set "Loads/Traction left=0; 0" |
   grep "clamped" >clamped
 [ "$(cat clamped)" = "no effect of Loads/Traction right: the boundary is clamped" ] ||
   fail "a traction on a clamped side: $(cat log)"
+notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=" \
+  --set "Loads/Traction bottom=0.1; 0" |
+  grep -q "^all loads act where the body cannot move" || fail "tangential: $(cat log)"
+notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Initial gap=0.003" |
+  grep -q "^all bonds are broken at rest" || fail "gap: $(cat log)"
+notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Bond threshold=2" |
+  grep -q "^no bond can break: the least threshold is 2" || fail "size: $(cat log)"
 # Strained by 0.1 in the direction of a side that nothing holds.
 notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=0; 6.9" |
   grep -q "^displacement gradients up to " || fail "gradients: $(cat log)"

@@ -52,6 +52,12 @@ namespace Debond
       return std::make_unique<Pattern>(*this);
     }
 
+    bool
+    allows_any_text() const
+    {
+      return !property;
+    }
+
   private:
     std::string words;
     Property    property;
@@ -163,6 +169,15 @@ namespace Debond
     void
     assign(const std::string &assignment);
 
+    /// Gives the variables the values that have been read. If an entry may not
+    /// have just any text, or does not allow what was written, it has what
+    /// @p evaluate makes of this as far as it allows that; errors are of what
+    /// was written.
+    void
+    take_values(
+      const std::function<std::string(const std::string &)> &evaluate =
+        [](const std::string &text) { return text; });
+
     /// Sets an entry to what follows from the entry @p source, itself or
     /// another one, whose place it gets in messages.
     void
@@ -170,7 +185,11 @@ namespace Debond
            const std::string &value,
            const std::string &source)
     {
-      set(path, value, locations().at(source));
+      const std::string location = locations().at(source);
+      if (entries.count(path) == 0)
+        declare_member(path);
+      entries.at(path).set_at = location;
+      take(path, value);
     }
 
     bool
@@ -179,7 +198,7 @@ namespace Debond
       return entries.count(path) > 0 && !entries.at(path).set_at.empty();
     }
 
-    /// The value as it was written.
+    /// The value as it was written or, after take_values(), as it was taken.
     const std::string &
     get(const std::string &path) const
     {
@@ -211,6 +230,11 @@ namespace Debond
     /// Prints all entries in the order of their declaration as a scene.
     void
     print(std::ostream &out, const bool documentation) const;
+
+    /// Prints names, values, defaults, documentation and what is allowed as
+    /// JSON, families with a member NAME.
+    void
+    print_json(std::ostream &out);
 
     /// Errors and notes have one line each, in the order of their detection.
     std::vector<std::string> errors, notes;
@@ -252,14 +276,19 @@ namespace Debond
         const std::string &value,
         const std::string &location);
 
+    /// Returns why the value is not allowed, or nothing.
+    std::string
+    take(const std::string &path, const std::string &value);
+
     void
     read_included(const std::string &name,
                   const std::string &file,
                   const std::string &location);
 
     dealii::ParameterHandler      handler;
-    std::map<std::string, Entry>  entries;  ///< by path
-    std::map<std::string, Family> families; ///< by path
+    std::map<std::string, Entry>  entries;   ///< by path
+    std::map<std::string, Family> families;  ///< by path
+    std::vector<std::string>      set_paths; ///< in the order of reading
     std::string                   file_name;
 
     /// The values that a file and those that it includes set, with their

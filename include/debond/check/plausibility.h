@@ -3,6 +3,7 @@
 #define debond_check_plausibility_h
 
 #include <debond/base/dof_vector.h>
+#include <debond/check/verification.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/mesh/body.h>
@@ -43,13 +44,18 @@ namespace Debond
 
 
   /// Returns notes for the user on a result that is right as the solution of
-  /// the discrete problem: that there is no load, that displacements are too
-  /// large for linear elasticity, or that faces are too large for bonds that
-  /// soften.
+  /// the discrete problem: that displacements are too large for linear
+  /// elasticity, or that faces are too large for bonds that soften.
   std::vector<std::string>
-  plausibility_notes(const bool           has_load,
-                     const LargestValues &largest,
+  plausibility_notes(const LargestValues &largest,
                      const double         faces_in_softening_zone);
+
+  /// Returns notes on bonds that cannot be meant: all are broken at rest, or
+  /// none can break before the body has moved by its size.
+  template <int dim>
+  std::vector<std::string>
+  bond_notes(const dealii::Triangulation<dim>    &body,
+             const std::vector<ContactNodeState> &nodes);
 } // namespace Debond
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <debond/base/parameter_table.h>
 #include <debond/elasticity/material.h>
+#include <debond/input/expression.h>
 #include <debond/mesh/body.h>
 
 #include <map>
@@ -54,7 +55,7 @@ namespace Debond
     std::string temperature_change; ///< one expression, empty for none
 
     /// Names that the expressions may use.
-    std::map<std::string, double> constants;
+    Constants constants;
   };
 
   /// An expression for each component of a vector, or nothing.
@@ -68,6 +69,17 @@ namespace Debond
   /// The section Loads.
   void
   bind_loads(LoadParameters &loads, ParameterTable &table);
+
+  /// The section Constants and Loads/Constants, for both of which @p texts is
+  /// not the place to read, as constants are evaluated before other entries.
+  void
+  bind_constants(std::map<std::string, std::string> &texts,
+                 ParameterTable                     &table);
+
+  /// Returns the values of the constants that the table has read, those of the
+  /// section Constants before others. Throws BadInput if one has none.
+  Constants
+  constants_of(const ParameterTable &table);
 
   /// Adds the constants of the material, which expressions may use, and checks
   /// these; what is wrong is left in the table as an error.
@@ -95,12 +107,12 @@ namespace Debond
   /// Rejects the entry @p path if the @p expression that it has is not one of
   /// so many components. An empty one stands for none.
   void
-  check_expression(const std::string                   &path,
-                   const std::string                   &expression,
-                   const unsigned int                   dimension,
-                   const unsigned int                   n_components,
-                   const std::map<std::string, double> &constants,
-                   ParameterTable                      &table);
+  check_expression(const std::string &path,
+                   const std::string &expression,
+                   const unsigned int dimension,
+                   const unsigned int n_components,
+                   const Constants   &constants,
+                   ParameterTable    &table);
 } // namespace Debond
 
 #endif

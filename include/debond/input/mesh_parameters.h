@@ -29,7 +29,7 @@ namespace Debond
             const unsigned int                        dimension,
             BodyParameters                            parameters,
             const std::map<std::string, std::string> &parts,
-            const std::map<std::string, double>      &constants,
+            const Constants                          &constants,
             ParameterTable                           &table);
 } // namespace Debond
 

@@ -43,6 +43,12 @@ namespace Debond
   public:
     SceneTable();
 
+    /// Gives the variables the values that have been read, with those of
+    /// constants. Throws BadInput if a constant has none; other errors are
+    /// left in the table.
+    void
+    evaluate();
+
     /// Returns the values of what has been read, @p scene being the path of its
     /// file. Throws BadInput with the errors of the table and those of values
     /// that do not fit together.
@@ -59,7 +65,7 @@ namespace Debond
   private:
     Parameters                         p;
     BodyParameters                     body;
-    std::map<std::string, std::string> parts; ///< texts by name
+    std::map<std::string, std::string> constants, parts; ///< texts by name
     LawSection                         laws;
   };
 

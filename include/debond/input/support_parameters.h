@@ -33,11 +33,11 @@ namespace Debond
 
   /// Leaves what is wrong in the table as an error.
   void
-  check_supports(const SupportParameters             &supports,
-                 const BodyDescription               &body,
-                 const unsigned int                   dimension,
-                 const std::map<std::string, double> &constants,
-                 ParameterTable                      &table);
+  check_supports(const SupportParameters &supports,
+                 const BodyDescription   &body,
+                 const unsigned int       dimension,
+                 const Constants         &constants,
+                 ParameterTable          &table);
 
   /// The expressions of a prescribed displacement with 0 for "free", and which
   /// components are not free.

@@ -31,15 +31,17 @@ namespace Debond
    * Has Gmsh read a file in any of its formats, with elements of the dimension
    * @p dim and of one less. A geometry is meshed, with edges of the length
    * @p size, or of what the file or Gmsh finds good if it is 0. Gmsh may take
-   * so many bytes of @p memory. Partitions are joined. Throws
+   * so many bytes of @p memory. DefineConstant of a .geo file takes the values
+   * of the @p constants. Partitions are joined. Throws
    * std::invalid_argument with Gmsh's words, or if there is more in the file
    * than Gmsh understands.
    */
   GmshFile
-  read_gmsh_file(const std::string &file_name,
-                 int                dim,
-                 double             size,
-                 double             memory);
+  read_gmsh_file(const std::string                   &file_name,
+                 int                                  dim,
+                 double                               size,
+                 double                               memory,
+                 const std::map<std::string, double> &constants);
 } // namespace Debond
 
 #endif

@@ -4,7 +4,9 @@
 
 #include <debond/mesh/box.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 namespace Debond
 {
@@ -28,6 +30,9 @@ namespace Debond
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box
     std::string   cuts;              ///< "y = 2, core | ring"
+
+    /// Numbers by name that a .geo file may be given by DefineConstant.
+    std::map<std::string, double> constants;
   };
 
   /// The body that the parameters describe. Throws std::invalid_argument if

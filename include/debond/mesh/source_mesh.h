@@ -38,10 +38,11 @@ namespace Debond
    */
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string &file_name,
-                 const double       scale,
-                 const double       size,
-                 const double       memory);
+  read_gmsh_mesh(const std::string                   &file_name,
+                 const double                         scale,
+                 const double                         size,
+                 const double                         memory,
+                 const std::map<std::string, double> &constants);
 
   /**
    * The mesh that deal.II's GridGenerator::generate_from_name_and_arguments()
