@@ -206,7 +206,7 @@ def columns(study, rows, kind, log):
         plot.add(label, *both, "o-")
     for power in study.powers if plot.curves else ():
         _, h, error, *_ = plot.curves[0]
-        plot.add(f"{names[1]}^{power:g}", h, error[0] * (h / h[0])**power, "--",
+        plot.add(f"({names[1]})^{power:g}", h, error[0] * (h / h[0])**power, "--",
                  color="0.6", zorder=0)
     return plot
 

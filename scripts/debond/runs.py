@@ -11,6 +11,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import types
 
 import numpy
 
@@ -145,3 +146,20 @@ def run(scene, settings=None, directory=None, ranks=1, check=True):
         raise Error("\n".join(said) or done.stderr.strip() or
                     f"ended with {done.returncode}", done.returncode, results)
     return results
+
+
+def matrices(directory):
+    """The discrete problem of a run with Output/Matrices = true, by the names of its
+    files: A and frames are sparse, S and modes arrays, f, g, bounds and weights
+    vectors, c_0 is a number, and `contact` has the rows of s in A, from 0."""
+    import scipy.io
+
+    found = {path.stem: scipy.io.mmread(path)
+             for path in pathlib.Path(directory).glob("*.mtx")}
+    if "S" not in found:
+        raise Error(f"{directory} has no S.mtx: the run needs Output/Matrices = true")
+    for name in ("f", "g", "bounds", "weights", "contact", "c_0"):
+        found[name] = found[name].ravel()
+    found.update({name: found[name].tocsr() for name in ("A", "frames")},
+                 c_0=found["c_0"].item(), contact=found["contact"].astype(int) - 1)
+    return types.SimpleNamespace(**found)

@@ -115,7 +115,8 @@ class Study:
                 self.fault(entry, "a sweep needs Parameter and different Values")
             if any(len(prm.items(one, "&")) != len(parts) for one in values):
                 self.fault(entry, f"not all have as many parts as {parameter}")
-            sweeps.append(Sweep(value.get(section + "/Label") or parameter, [
+            sweeps.append(Sweep(value.get(section + "/Label") or
+                                parameter.removeprefix("Constants/"), [
                 (one, None, dict(zip(parts, prm.items(one, "&"))))
                 for one in values]))
         methods = prm.items(value["Study/Methods"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The package debond: runs, what they return and what they throw."""
+"""The package debond: runs, what they return and what they throw, and matrices."""
 import os
 import pathlib
 import shutil
@@ -52,8 +52,40 @@ for x, u in zip(profile["x"], profile["u_nu"]):
     at = numpy.linalg.norm(found.points - (x, 0), axis=1).argmin()
     assert abs(-found.displacement[at, 1] - u) < 1e-6 * abs(profile["u_nu"]).max()
 
-# The next run takes the displacement of the one before.
+# J of the matrices at s is that of the program, S, g and c_0 are those of A and f.
+for of_run, tolerance in (found, 1e-10), (debond.run(
+        SOURCE / "prm" / "cookbook" / "double-cantilever.prm", {
+            "Output/Matrices": True}), 1e-7):
+    problem, profile = debond.matrices(of_run.directory), of_run.profile
+    s = profile["u_nu"] - problem.bounds
+    held = problem.weights * profile["bond_stiffness"] / 2 * numpy.minimum(
+        -s, profile["bond_threshold"])**2
+    near(s @ problem.S @ s / 2 - problem.g @ s + held.sum() + problem.c_0,
+         of_run.summary["functional"], tolerance)
+problem = debond.matrices(found.directory)
+A, f, kept = problem.A.toarray(), problem.f, problem.contact
+rest = numpy.setdiff1d(numpy.arange(len(f)), kept)
+inner = numpy.linalg.solve(A[numpy.ix_(rest, rest)], numpy.column_stack(
+    [A[numpy.ix_(rest, kept)], f[rest]]))
+mixed = A[numpy.ix_(kept, rest)] @ inner
+assert abs(A[numpy.ix_(kept, kept)] - mixed[:, :-1] - problem.S).max() < \
+    1e-11 * problem.S.max()
+assert abs(f[kept] - mixed[:, -1] - problem.g).max() < 1e-11 * abs(problem.g).max()
+near(problem.c_0, -f[rest] @ inner[:, -1] / 2, 1e-11)
+F = problem.frames.toarray()
+assert abs(F.T @ F - numpy.eye(len(F))).max() < 1e-14
+near(problem.weights.sum(), 0.4 - 0.02, 1e-12)  # the corners have the rest
+assert not problem.bounds.any()
+assert problem.modes.shape == (len(f), 3)
+
+# Of a run without matrices there are none, and the results of the run before have
+# lost their displacement.
 again = debond.run(SCENE, QUICK)
+try:
+    debond.matrices(again.directory)
+    raise AssertionError("There are no matrices.")
+except debond.Error as error:
+    assert "Output/Matrices" in str(error)
 fresh = debond.Results(again.directory)
 assert fresh.summary == again.summary
 debond.run(SCENE, QUICK)

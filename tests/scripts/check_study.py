@@ -91,26 +91,37 @@ for entry, words in {
     said = study("one.prm", "--set", entry, code=2)
     assert all(word in said for word in words), said
 
-# A column of a load path over a number of the scene, with a curve for each value of
+# A column of a load path over a constant of the scene, with a curve for each value of
 # the other sweep, though that is the last one. The block comes off as a column does:
 # it pulls with at most a M on each unit of its length, 20.
 pathlib.Path("path.prm").write_text(f"""include {SOURCE}/prm/cookbook/punch.prm
+subsection Constants
+  set w = 10
+  set M = 0.01
+  set a = 50
+end
+subsection Mesh
+  set Lengths = 2 * w, w
+end
+subsection Contact law
+  set Bond stiffness = a
+  set Bond threshold = M
+end
 subsection Load path
   set Displacement factors = 0:1:30
 end
 """)
 pathlib.Path("force.prm").write_text("""subsection Study
   set Scene   = path.prm
-  set Columns = last force = /reactions/top/1 | force = largest reaction_top_y to 9
+  set Columns = h | last force = /reactions/top/1 | force = largest reaction_top_y
 end
 subsection Sweep 1
-  set Parameter = Contact law/Bond threshold
+  set Parameter = Constants/M
   set Label     = M in mm
   set Values    = linear 0.005 0.015 3
 end
 subsection Sweep 2
-  set Parameter = Contact law/Bond stiffness
-  set Label     = a
+  set Parameter = Constants/a
   set Values    = 25 | 50
 end
 subsection Plots
@@ -120,6 +131,7 @@ end
 study("force.prm")
 found = table("output/force")
 assert abs(found["last force"]).max() < 1e-9, found
+assert set(found["h"]) == {20 / 8}, found
 for M, a, force in zip(found["M in mm"], found["a"], found["force"]):
     assert 0.8 * 20 * a * M < force <= 20 * a * M * (1 + 1e-9), (M, a, force)
 curves = pathlib.Path("output/force/plots/force-over-M-in-mm.svg").read_text()
