@@ -132,6 +132,7 @@ study("force.prm")
 found = table("output/force")
 assert abs(found["last force"]).max() < 1e-9, found
 assert set(found["h"]) == {20 / 8}, found
+assert list(found["M in mm"][::2]) == [0.005, 0.01, 0.015], found
 for M, a, force in zip(found["M in mm"], found["a"], found["force"]):
     assert 0.8 * 20 * a * M < force <= 20 * a * M * (1 + 1e-9), (M, a, force)
 curves = pathlib.Path("output/force/plots/force-over-M-in-mm.svg").read_text()
