@@ -66,8 +66,10 @@ class Study:
         self.minimum = prm.number(value["Study/Minimum"])
         self.kinds = prm.items(value["Plots/Kinds"])
         self.fitted = prm.items(value["Plots/Fitted cases"])
-        self.powers = [float(p) for p in prm.items(value["Plots/Powers"])]
-        self.window = [float(w) for w in value["Study/Fit window"].split(",")]
+        self.powers = self.read(value, "Plots/Powers", lambda text: [
+            *map(float, prm.items(text))])
+        self.window = self.read(value, "Study/Fit window", lambda text: [
+            *map(float, text.split(","))])
         self.settings = self.read(value, "Study/Settings", prm.pairs)
         self.preparation = self.read(value, "Preparation/Settings", prm.pairs)
         for kind in ("Body", "Contact"):
@@ -189,14 +191,12 @@ class Study:
         if name in self.columns:
             return self.columns[name].value
         for index, sweep in enumerate(self.sweeps):
-            if sweep.label == name and sweep.has_numbers:
+            if sweep.label == name and not sweep.has_numbers:
+                raise ValueError(f"not all values of '{name}' are numbers")
+            if sweep.label == name:
                 return lambda row: prm.number(row.case.values[index])
-        try:
-            return Column(name).value
-        except ValueError as error:
-            own = [*self.columns, *(sweep.label for sweep in self.sweeps
-                                    if sweep.has_numbers)]
-            raise ValueError(f"{error}; and of this study {', '.join(own)}") from None
+        return Column(name, [*self.columns, *(
+            sweep.label for sweep in self.sweeps if sweep.has_numbers)]).value
 
     def all_cases(self):
         return [self.first] * bool(self.first) + self.minima + self.cases
@@ -217,9 +217,11 @@ def sweep_values(text):
     space = {"linear": numpy.linspace, "geometric": numpy.geomspace}.get(kind)
     if not space:
         return prm.items(text)
-    if len(ends) != 3:
-        raise ValueError(f"expected {kind} FIRST LAST COUNT")
-    return [f"{x:.6g}" for x in space(*map(float, ends[:2]), int(ends[2]))]
+    try:
+        first, last, count = map(float, ends)
+        return [f"{x:.6g}" for x in space(first, last, int(count))]
+    except ValueError:
+        raise ValueError(f"expected {kind} FIRST LAST COUNT") from None
 
 
 class Row:
@@ -279,10 +281,10 @@ class Row:
 
 
 class Column:
-    """A column of the table. Throws ValueError if there is none of that
-    name."""
+    """A column of the table. Throws ValueError if there is none of that name,
+    with those that the study has, if any, and all others."""
 
-    def __init__(self, name):
+    def __init__(self, name, own=()):
         self.title = self.kind = name
         self.pointer, self.iteration, self.digits = "", None, 2
         number = re.match(r"(?:(.*?)\s*=\s*)?(/.*?|(?:largest|least) \w+)"
@@ -302,7 +304,7 @@ class Column:
             self.kind = "order"
         else:
             raise ValueError(f"there is no column '{name}', but " + ", ".join(
-                (*NAMES, *SHORT_NAMES, *FORMS)))
+                (*own, *NAMES, *SHORT_NAMES, *FORMS)))
         if self.kind in ("J", "J_min"):
             self.digits = 11
 

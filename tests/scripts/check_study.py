@@ -79,14 +79,15 @@ assert "bad.prm:3: Study/Colums" in said and "Study/Columns?" in said, said
 # also which columns there are, before and after the runs.
 columns = "status | unknowns | J"
 for entry, words in {
-        "Plots/Kinds=force over M": ("Plots/Kinds", "'force'", "TITLE = /POINTER",
-                                     "unknowns, J, h, broken"),
-        "Plots/Kinds=J over cells": ("'cells'", "order of COLUMN"),
+        "Plots/Kinds=force over M": ("Plots/Kinds", "no column 'force', but status, "
+                                     "unknowns, J, h, broken", "TITLE = /POINTER"),
+        "Plots/Kinds=J over cells": ("not all values of 'cells' are numbers",),
         "Plots/Kinds=forces": ("there is no plot 'forces'", "convergence"),
         "Study/Columns=/reactions/top/1": ("no case has /reactions/top/1, but left",),
         "Study/Columns=/reactions/left/2": ("but 0, 1",),
         "Study/Columns=J | largest J": ("no case has largest J",),
         "Sweep 2/Values=linear 1 2": ("Sweep 2/Values", "linear FIRST LAST COUNT"),
+        "Plots/Powers=1, 2": ("Plots/Powers", "1, 2"),
 }.items():
     said = study("one.prm", "--set", entry, code=2)
     assert all(word in said for word in words), said
