@@ -16,9 +16,9 @@ from .runs import read_csv
 
 # More curves than these have the colours of a scale, in their order.
 MOST_COLOURS = 10
-# Logarithmic axes that are shorter, in decades, have labels of a linear one, or
-# also at 2 and 5 times the powers of ten.
-LINEAR, TWO_AND_FIVE = 1.6, 4.2
+# Logarithmic axes of at most so many decades have labels at these multiples of the
+# powers of ten, or like a linear one.
+MULTIPLES = ((0.9, None), (1.5, (1, 2, 3, 5, 7)), (4.2, (1, 2, 5)))
 MOST_LABELS = 25
 
 plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.color": "0.85",
@@ -78,12 +78,13 @@ class Plot:
 def label_ticks(axis):
     """Gives a logarithmic axis more than three labels."""
     low, high = axis.get_view_interval()
-    decades = numpy.log10(high / low)
-    if decades < TWO_AND_FIVE:
-        axis.set_major_locator(ticker.AutoLocator() if decades < LINEAR else
-                               ticker.LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(ticker.NullFormatter())
+    for decades, multiples in MULTIPLES:
+        if numpy.log10(high / low) <= decades:
+            axis.set_major_locator(ticker.LogLocator(subs=multiples) if multiples
+                                   else ticker.AutoLocator())
+            axis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+            axis.set_minor_formatter(ticker.NullFormatter())
+            return
 
 
 def save(figure, directory, name):
@@ -206,7 +207,8 @@ def columns(study, rows, kind, log):
         plot.add(label, *both, "o-")
     for power in study.powers if plot.curves else ():
         _, h, error, *_ = plot.curves[0]
-        plot.add(f"({names[1]})^{power:g}", h, error[0] * (h / h[0])**power, "--",
+        base = f"({names[1]})" if " " in names[1] else names[1]
+        plot.add(f"{base}^{power:g}", h, error[0] * (h / h[0])**power, "--",
                  color="0.6", zorder=0)
     return plot
 

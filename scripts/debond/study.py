@@ -424,8 +424,11 @@ def levels(summary):
 
 
 def groups(study, rows, without):
-    """The rows by the values of all sweeps but one, in their order."""
+    """The rows by the values of all sweeps but one, in the order of its numbers."""
     result = {}
+    if without and without.has_numbers:
+        index = study.sweeps.index(without)
+        rows = sorted(rows, key=lambda row: float(row.case.values[index]))
     for row in rows:
         name = ", ".join(f"{sweep.label} = {value}" for sweep, value in
                          zip(study.sweeps, row.case.values)

@@ -138,6 +138,10 @@ for M, a, force in zip(found["M in mm"], found["a"], found["force"]):
     assert 0.8 * 20 * a * M < force <= 20 * a * M * (1 + 1e-9), (M, a, force)
 curves = pathlib.Path("output/force/plots/force-over-M-in-mm.svg").read_text()
 assert "a = 25" in curves and "a = 50" in curves and "M in mm = " not in curves
+mixed = studies.Study("force.prm", ["Sweep 1/Values=0.015 | 0.005 | 0.01"])
+curves = studies.groups(mixed, [studies.Row(mixed, case) for case in mixed.cases],
+                        mixed.sweeps[0])
+assert [row.case.values[0] for row in curves["a = 50"]] == ["0.005", "0.01", "0.015"]
 page = open("output/force/index.md").read()
 assert "The plot last-force-over-force has no points" in page
 assert "iterations.png" in page and "Best values" not in page
