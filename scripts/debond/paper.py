@@ -35,7 +35,7 @@ SCENES = [
                                       "contact": "cookbook-tape-front"}),
     *((f"cookbook/{name}", "", "mm, MPa", {"body": f"cookbook-{name}"})
       for name in ("ring", "double-cantilever", "bimaterial-strip", "peel", "blister",
-                   "wafer")),
+                   "wafer", "delamination")),
     *((f"cookbook/{name}", "", "mm, MPa", {"load_path": f"cookbook-{name}"})
       for name in ("double-cantilever-path", "r-curve", "punch",
                    "softening-cantilever", "snap-back"))]

@@ -2,17 +2,21 @@
 """Draws what a run has written in its output directory."""
 
 import argparse
+import collections
 import os
+import re
 import sys
 
-import meshio
 import numpy
+from matplotlib import colors
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.lines import Line2D
 
-from . import plots
+from . import plots, vtu
 from .plots import plt
 from .prm import BadInput
-from .runs import bodies, read_csv
+from .runs import bodies, read_csv, read_summary
 
 ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
          "frameon": False}
@@ -20,233 +24,321 @@ ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
 # colours leave out: stress at corners grows without bound with refinement.
 LARGEST_SHOWN = 0.06
 CUT = 0.995
-MOST_CELLS_WITH_EDGES = 3000
+PIXELS = 1000.  # about the width of a body
+MOST_VECTORS = 20000  # more polygons are an image in SVG files, too
+FROM_ABOVE, FROM_BELOW = (-65, 25), (-65, -25)  # azimuth and elevation
 STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
-          "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray", "held": "k"}
+          "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray"}
+OTHER_STATE = "tab:purple"
+FORCES = {("mm", "MPa"): "N", ("mm", "N/mm²"): "N", ("mm", "GPa"): "kN",
+          ("m", "Pa"): "N", ("m", "kPa"): "kN", ("m", "MPa"): "MN",
+          ("m", "GPa"): "GN", ("µm", "MPa"): "µN"}
+# Columns of load_path.csv: names, words for them, and what they measure.
+COLUMNS = [
+    ("factor", "load factor", ""),
+    ("displacement_factor", "factor of the displacements", ""),
+    ("(J|(elastic|adhesion|dissipated)_energy)", r"\1", "energy"),
+    ("unit_load_work", "work of the loads of factor 1", "energy"),
+    ("unit_displacement_work", "work of the supports per factor", "energy"),
+    ("(.*)_part", r"\1 part of the contact boundary", ""),
+    ("(mean|largest)_gap", r"\1 opening", "length"),
+    ("normal_force", "normal force (positive: pressed)", "force"),
+    ("contact_reaction_(.)", r"force of the foundation, \1", "force"),
+    ("clamped_reaction_(.)", r"force of all supports, \1", "force"),
+    ("reaction_(.*)_(.)", r"force of support \1, \2", "force"),
+    ("mean_(.*)_(.)", r"mean displacement of \1, \2", "length"),
+    ("probe_(.*)_(.)", r"displacement of probe \1, \2", "length"),
+    ("broken_zone", "size of the broken zone", "zone"),
+    ("fronts", "position of the front, x", "length"), ("(.*)", r"\1", "")]
 
 
-class Grid:
-    """The cells of .vtu files by their corners, with their fields."""
-
-    def __init__(self, files):
-        self.meshes = [meshio.read(file) for file in files]
-        self.points = numpy.concatenate([m.points for m in self.meshes])
-        cells, n = [], 0
-        for mesh in self.meshes:
-            (block,) = mesh.cells
-            corners = {"li": 2, "tr": 3, "te": 4, "qu": 4}[block.type[:2]]
-            cells.append(block.data[:, :corners] + n)
-            n += len(mesh.points)
-        self.cells = numpy.concatenate(cells)
-        extent = numpy.ptp(self.points, axis=0)
-        self.dim, self.size = 3 if extent[2] > 0 else 2, extent.max()
-
-    def at_points(self, name):
-        return numpy.concatenate([m.point_data[name] for m in self.meshes])
-
-    def in_cells(self, name):
-        """Of each cell, the mean if the field is at points."""
-        if name in self.meshes[0].cell_data:
-            return numpy.concatenate([mesh.cell_data[name][0].ravel()
-                                      for mesh in self.meshes])
-        if name not in self.meshes[0].point_data:
-            raise BadInput(f"there is no field {name}")
-        corners = self.at_points(name)[self.cells]
-        return corners.reshape(len(self.cells), -1).mean(axis=1)
-
-    def boundary(self):
-        """The faces (2D: edges) that belong to one cell, and the cells. Files
-        of ranks have points of their own: those at one place are one. In a
-        single file these are of bodies that are glued to each other."""
-        vertex = numpy.arange(len(self.points))
-        if len(self.meshes) > 1:
-            vertex = numpy.unique(
-                numpy.round(self.points / self.size * 1e6).astype(int), axis=0,
-                return_inverse=True)[1].ravel()
-        faces = numpy.concatenate([numpy.delete(self.cells, k, axis=1)
-                                   for k in range(self.dim + 1)])
-        _, first, count = numpy.unique(
-            numpy.sort(vertex[faces], axis=1), axis=0, return_index=True,
-            return_counts=True)
-        first = first[count == 1]
-        return faces[first], first % len(self.cells)
+def endings(text, dim):
+    """What follows the words for what is measured, by 'LENGTH, STRESS'. In 2D
+    forces and energies are per thickness."""
+    length, stress, *_ = [word.strip() for word in text.split(",")] + [""]
+    force = FORCES.get((length, stress.replace("^2", "²")),
+                       stress and f"{stress} {length}²")
+    per = f"/{length}" if dim == 2 else ""
+    units = {"": "", "length": length, "stress": stress,
+             "zone": length and length + ("²" if dim == 3 else ""),
+             "force": force and force + per,
+             "energy": force and f"{force} {length}{per}"}
+    return {what: unit and f", {unit}" for what, unit in units.items()}
 
 
-def projection(points, grid, azimuth=-65., elevation=25.):
-    """Coordinates on the picture and the depth, without perspective; y, the
-    direction away from most foundations, points up."""
-    if grid.dim == 2:
-        return points[:, :2], points[:, 2]
-    a, e = numpy.radians((azimuth, elevation))
-    right = numpy.array([-numpy.sin(a), 0, -numpy.cos(a)])
-    back = numpy.array([numpy.cos(a) * numpy.cos(e), numpy.sin(e),
-                        -numpy.sin(a) * numpy.cos(e)])
-    return points @ numpy.array([right, numpy.cross(back, right)]).T, \
-        points @ back
+def words_for(column, units):
+    found, words, what = next(
+        (found, words, what) for pattern, words, what in COLUMNS
+        if (found := re.fullmatch(pattern, column)))
+    return found.expand(words).replace("_", " ") + units[what]
 
 
-def colour(axes, drawn, values, title):
-    """Gives the cells colours, with a bar that says what they leave out."""
-    top, largest = numpy.quantile(values, CUT), values.max()
+class Run:
+    """A directory with results; with a step those of that step of a load path."""
+
+    def __init__(self, directory, step, units):
+        self.directory, self.step, self.title = directory, step, ""
+        self.summary = read_summary(directory)
+        if not self.summary:
+            raise BadInput(f"{directory} has no summary.json of a run")
+        self.units = endings(units, self.summary["dimension"])
+        self.load_path = read_csv(os.path.join(directory, "load_path.csv"))
+        self.factor = ("factor" if numpy.ptp(self.load_path.get("factor", 0.)) else
+                       "displacement_factor")
+        if step:
+            steps = [*self.load_path.get("step", [])]
+            if step not in steps:
+                raise BadInput(f"{directory} has no step {step}, but {len(steps)}")
+            factor = self.load_path[self.factor][steps.index(step)]
+            self.title = (f"step {step} of {len(steps)}, "
+                          f"{words_for(self.factor, self.units)} {factor:.4g}\n")
+        files = self.files("contact")
+        self.contact = vtu.Contact(files[0], self.summary) if files else None
+
+    def files(self, name):
+        found = bodies(self.directory, f"load_path/{name}-{self.step:05d}"
+                       if self.step else name)
+        if not found:
+            entry = f"Load path {name}" if self.step else name.capitalize()
+            print(f"picture: {self.directory} has no {name}{self.step or ''}: it "
+                  f"needs Output/{entry} VTU = true", file=sys.stderr)
+        return found
+
+    def save(self, figure, name):
+        plots.save(figure, self.directory,
+                   f"{name}-{self.step}" if self.step else name)
+
+    def legend(self, axes, before, **style):
+        """What the colours of states mean, with the numbers of nodes."""
+        contact, handles = self.contact, [*before]
+        nodes = {*zip(*contact.nodes.T, contact.at_nodes("u_nu"), contact.state)
+                 } if contact else {}
+        for state, n in collections.Counter(one[-1] for one in sorted(nodes)).items():
+            if state != "held":
+                handles.append(Line2D([], [], color=STATES.get(state, OTHER_STATE),
+                                      label=f"{state} ({n})", **style))
+        axes.legend(handles=handles, **ABOVE)
+
+
+def colours_of(states):
+    return [colors.to_rgba(STATES.get(state, OTHER_STATE)) for state in states]
+
+
+def views(body, contact, wanted):
+    """Of each picture the directions right, up and to the viewer. In 3D the
+    direction away from the contact boundary points up; what is below the body is
+    seen from below as well."""
+    if body.dim == 2:
+        return [numpy.eye(3)]
+    axis, away, angles = 1, 1., [FROM_ABOVE]
+    if contact:
+        axis = numpy.argmin(numpy.ptp(contact.nodes, axis=0))
+        heights = body.points[:, axis] - contact.nodes[:, axis].mean()
+        away = -1. if heights.mean() < 0 else 1.
+        if (away * heights).min() > -1e-6 * body.size:
+            angles = [FROM_ABOVE, FROM_BELOW]
+    up = away * numpy.eye(3)[axis]
+    across = numpy.eye(3)[numpy.argmax(numpy.ptp(body.points, axis=0) * (up == 0))]
+    result = []
+    for a, e in numpy.radians([wanted] if wanted else angles):
+        right = numpy.cos(a) * numpy.cross(up, across) - numpy.sin(a) * across
+        back = numpy.cos(e) * numpy.cross(right, up) + numpy.sin(e) * up
+        result.append(numpy.array([right, numpy.cross(back, right), back]))
+    return result
+
+
+def colour(axes, values, title):
+    """The colours of values, with a bar that says what they leave out."""
+    low, top, largest = min(0., values.min()), numpy.quantile(values, CUT), values.max()
     if top <= 0 or largest < 1.2 * top:
         top = largest
-    drawn.set(array=values, cmap="viridis",
-              clim=(min(0., values.min()), top or 1.))
     cut = (values > top).sum()
     if cut:
         title += (f"; {cut} cells above {top:.3g} cut off, the largest is "
                   f"{largest:.3g}")
-    axes.figure.colorbar(drawn, ax=axes, orientation="horizontal", shrink=0.7,
-                         aspect=45, label=title,
-                         extend="max" if cut else "neither")
+    scale = ScalarMappable(colors.Normalize(low, top if top > low else low + 1.))
+    axes[0].figure.colorbar(scale, ax=axes, orientation="horizontal", shrink=0.7,
+                            aspect=45, label=title, extend="max" if cut else "neither")
+    return scale.to_rgba(values)
 
 
-def show_nodes(axes, profile, place, size):
-    """The contact nodes in the colours of their states."""
-    for state in dict.fromkeys(profile["state"]):
-        of = numpy.array(profile["state"]) == state
-        axes.scatter(*place[of].T, s=size, color=STATES.get(state, "tab:purple"),
-                     label=f"{state} ({of.sum()})", zorder=3)
-
-
-def draw_body(directory, length, stress, field):
-    files = bodies(directory)
+def draw_body(run, field, wanted):
+    files = run.files("body")
     if not files:
         return
-    grid = Grid(files)
-    u, values = grid.at_points("displacement"), grid.in_cells(field)
+    body = vtu.Body(files)
+    u, values = body.at_points("displacement"), body.in_cells(field)
     largest = numpy.linalg.norm(u, axis=1).max()
-    scale = LARGEST_SHOWN * grid.size / largest if largest else 1.
+    scale = LARGEST_SHOWN * body.size / largest if largest > 1e-12 * body.size else 1.
     scale = float(f"{scale:.0e}")  # one digit, so that it can be said
-    faces, owners = grid.boundary()
-    moved, depth = projection(grid.points + scale * u, grid)
-    rest, _ = projection(grid.points, grid)
-    shown = grid.cells
-    if grid.dim == 3:  # from behind to the front
-        order = numpy.argsort(depth[faces].mean(axis=1))
-        shown, values = faces[order], values[owners[order]]
-    extent = numpy.ptp(numpy.concatenate([moved, rest]), axis=0)
-    figure, axes = plt.subplots(
-        figsize=(10., min(2.4 + 10. * extent[1] / extent[0], 9.)))
-    axes.set_aspect("equal")
-    axes.grid(False)
-    edges = len(grid.cells) < MOST_CELLS_WITH_EDGES
-    cells = axes.add_collection(PolyCollection(
-        moved[shown], edgecolors=(0, 0, 0, 0.35) if edges else "face",
-        linewidths=0.3))
-    colour(axes, cells, values, "von Mises stress" + stress
-           if field == "von_mises" else field)
-    profile = read_csv(os.path.join(directory, "contact_profile.csv"))
-    if grid.dim == 3:
-        draw_box(axes, grid, length)
-    else:
-        axes.add_collection(LineCollection(rest[faces], colors="0.45",
-                                           linestyles="--", label="at rest"))
-        axes.set(xlabel="x" + length, ylabel="y" + length)
-    if grid.dim == 2 and profile:
-        # With displacements between the two nearest points of the boundary; of
-        # bodies that are glued to each other in the middle between both.
-        nodes = numpy.array([profile["x"], profile["y"]]).T
-        own = numpy.unique(faces)
-        _, first, place = numpy.unique((rest[own] / grid.size).round(6), axis=0,
-                                       return_index=True, return_inverse=True)
-        means = numpy.zeros((len(first), 2))
-        numpy.add.at(means, place, u[own, :2])
-        means /= numpy.bincount(place)[:, None]
-        own = own[first]
-        for k, node in enumerate(nodes.copy()):
-            distance = numpy.linalg.norm(rest[own] - node, axis=1)
-            i, j = numpy.argsort(distance)[:2]
-            nodes[k] += scale * numpy.average(
-                means[[i, j]], 0, [distance[j], distance[i]])
-        show_nodes(axes, profile, nodes, max(4., min(20., 2000. / len(nodes))))
-    if grid.dim == 2:
-        axes.legend(**ABOVE)
-    axes.autoscale_view()
-    axes.set_title(f"displacement x {scale:g}, the largest is {largest:.3g}"
-                   f"{length.replace(',', '')}", fontsize=9, pad=22)
-    plots.save(figure, directory, "body")
+    panels = views(body, run.contact, wanted)
+    width, height, _ = numpy.ptp(numpy.concatenate(
+        [body.points, body.points + scale * u]) @ panels[0].T, axis=0)
+    figure, all_axes = plt.subplots(len(panels), squeeze=False, figsize=(
+        10., min(2.4 + len(panels) * 10. * height / width, 9.)))
+    what = {"displacement": "length", "region": ""}.get(field, "stress")
+    colours = colour([*all_axes.flat], values, field.replace("_", " ").replace(
+        "von mises", "von Mises stress") + run.units[what])
+    length, before = run.units["length"], []
+    for axes, panel in zip(all_axes.flat, panels):
+        draw_panel(axes, run, body, (body.points + scale * u) @ panel.T, colours,
+                   PIXELS / max(width, len(panels) * height / 0.7))
+        if body.dim == 3:
+            draw_box(axes, body.points, panel, length[1:])
+        else:
+            before = [axes.add_collection(LineCollection(
+                body.points[body.boundary()[0]][:, :, :2], colors="0.6",
+                linewidths=0.8, label="at rest"))]
+            axes.set(xlabel="x" + length, ylabel="y" + length)
+        axes.set_aspect("equal")
+        axes.grid(False)
+        axes.autoscale_view()
+    run.legend(all_axes[0, 0], before, lw=3)
+    all_axes[0, 0].set_title(
+        f"{run.title}displacement x {scale:g}, the largest is {largest:.3g}"
+        f"{length[1:]}", fontsize=9, pad=22)
+    run.save(figure, "body")
 
 
-def draw_box(axes, grid, length):
-    """The box around a body in 3D at rest, with its lengths."""
-    low, high = grid.points.min(axis=0), grid.points.max(axis=0)
-    corners = numpy.array([[(low, high)[b >> d & 1][d] for d in range(3)]
-                           for b in range(8)])
-    flat, _ = projection(corners, grid)
-    # Lengths along edges that are not in front of the body.
-    for d, side, to, at in ((0, 1, (0, -12), "center"),
-                            (1, 0, (-5, 0), "right"), (2, 1, (5, -8), "left")):
+def draw_panel(axes, run, body, moved, colours, pixels):
+    """The cells in 2D, in 3D the faces that the viewer sees, from behind to the
+    front; lines between materials; the contact boundary in the colours of its
+    states. Lines of cells fade where these are small."""
+    faces, owners = body.boundary()
+    triangles, cells = body.cells, numpy.arange(len(body.cells))
+    if body.dim == 3:
+        a, b, c = moved[faces].swapaxes(0, 1)
+        normal = numpy.cross(b - a, c - a)
+        inwards = moved[body.cells[owners].sum(axis=1) - faces.sum(axis=1)] - a
+        seen = normal[:, 2] * (normal * inwards).sum(axis=1) < 0
+        faces, owners = triangles, cells = faces[seen], owners[seen]
+    lines = body.borders(triangles, cells)
+    if body.dim == 2:
+        lines = numpy.concatenate([lines, faces])
+    parts, states = run.contact.shares(body.points[faces], moved[faces]) \
+        if run.contact else ([], [])
+
+    corners, colours = moved[triangles], colours[cells]
+    sides = (numpy.roll(corners, 1, axis=1) - corners)[:, :, :2]
+    height = pixels * abs(numpy.cross(sides[:, 0], sides[:, 1])) / (
+        numpy.linalg.norm(sides, axis=2).max(axis=1) + 1e-300)
+    edges = colours.copy()
+    edges[:, :3] *= 1 - 0.35 * numpy.clip((height - 4.) / 6., 0., 1.)[:, None]
+    of_states = colours_of(states)
+    black, nearer = [(0., 0., 0., 1.)] * len(lines), 0.02 * body.size
+    drawn = [(polygon[:, :2], fill, edge, width, polygon[:, 2].mean() + near)
+             for *layer, width, near in (
+                 (corners, colours, edges, 0.3, 0.),
+                 (moved[lines], black, black, 0.6, 1.1 * nearer),
+                 (parts, of_states, of_states, 3. if body.dim == 2 else 0.3, nearer))
+             for polygon, fill, edge in zip(*layer)]
+    if body.dim == 3:
+        drawn.sort(key=lambda one: one[-1])
+    polygons, fill, edges, widths, _ = zip(*drawn)
+    axes.add_collection(PolyCollection(
+        polygons, facecolors=fill, edgecolors=edges, linewidths=widths,
+        joinstyle="bevel", rasterized=len(drawn) > MOST_VECTORS))
+
+
+def draw_box(axes, points, panel, length):
+    """The box around a body in 3D at rest, behind it, with its lengths."""
+    ends = [points.min(axis=0), points.max(axis=0)]
+    flat = numpy.array([[ends[b >> d & 1][d] for d in range(3)]
+                        for b in range(8)]) @ panel[:2].T
+    for d, size in enumerate(ends[1] - ends[0]):
         lines = [flat[[b, b | 1 << d]] for b in range(8) if not b >> d & 1]
-        axes.add_collection(LineCollection(lines, colors="0.45",
-                                           linewidths=0.8, linestyles="--"))
-        axes.annotate(f"{'xyz'[d]}: {high[d] - low[d]:.4g}{length[1:]}",
-                      min(lines, key=lambda line: line[:, side].sum()).mean(0),
-                      fontsize=8, xytext=to, textcoords="offset points", ha=at)
+        axes.add_collection(LineCollection(lines, colors="0.45", linewidths=0.8,
+                                           linestyles="--", zorder=0.5))
+        # At the lowest edge, or at the leftmost of those that rise.
+        x, y = lines[0][1] - lines[0][0]
+        rises = abs(y) > abs(x)
+        line = min(lines, key=lambda line: line[:, 0 if rises else 1].sum())
+        left = rises or x * y < 0
+        axes.annotate(f"{'xyz'[d]}: {size:.4g}{length}", line.mean(axis=0), fontsize=8,
+                      xytext=(-5 if left else 5, 0 if rises else -10),
+                      textcoords="offset points", ha="right" if left else "left")
     axes.axis("off")
 
 
-def draw_contact(directory, length, stress):
-    profile = read_csv(os.path.join(directory, "contact_profile.csv"))
-    if not profile:
+def draw_contact(run):
+    if not run.contact:
         return
-    figure, both = plt.subplots(2, 1, figsize=(9, 6), sharex=True)
-    if "z" in profile:
-        draw_surface(directory, profile, both, length)
-    else:
-        draw_line(profile, both, length, stress)
-    both[int("z" in profile)].legend(**ABOVE)
-    plots.save(figure, directory, "contact")
+    height = 6.
+    if run.contact.dim == 3:
+        low, high = numpy.sort(numpy.ptp(run.contact.nodes, axis=0))[1:]
+        height = min(2.4 + 16. * low / high, 10.)
+    figure, both = plt.subplots(2, 1, figsize=(9, height), sharex=True)
+    (draw_line if run.contact.dim == 2 else draw_surface)(run, both)
+    if run.title:
+        figure.suptitle(run.title.strip(), fontsize=9)
+    run.save(figure, "contact")
 
 
-def draw_line(profile, both, length, stress):
-    name, x, _ = plots.position(profile)
-    order = numpy.argsort(x)
-    for axes, key, label in (
-            (both[0], "u_nu", "normal displacement" + length),
-            (both[1], "normal_force_density", "normal force density" + stress)):
-        axes.plot(x[order], profile[key][order], color="0.6", lw=1)
-        show_nodes(axes, profile, numpy.array([x, profile[key]]).T, 10.)
+def draw_line(run, both):
+    contact, length = run.contact, run.units["length"]
+    name, pieces = contact.pieces()
+    # Where bonds are, which have no stiffness if they are rigid at first.
+    M, stiffness = contact.at_nodes("bond_threshold"), contact.at_nodes("bond_stiffness")
+    for axes, key, label, usual in (
+            (both[0], "u_nu", "normal displacement" + length, M),
+            (both[1], "normal_force_density", "normal force density" +
+             run.units["stress"], M * stiffness)):
+        values = numpy.where(contact.is_unknown, numpy.nan, contact.at_nodes(key))
+        for piece, x in pieces:
+            axes.plot(x, values[piece], color="0.6", lw=1)
+            axes.scatter(x, values[piece], s=10., zorder=3,
+                         c=colours_of(contact.state[piece]))
+            if len(name) > 1 and piece is not pieces[-1][0]:
+                axes.axvline(x[-1], color="k", ls=":", lw=0.8)
         axes.axhline(0, color="k", lw=0.6)
         axes.set_ylabel(label)
-    M = numpy.unique(profile["bond_threshold"])
-    if len(M) == 1 and M[0] < 3 * abs(profile["u_nu"]).max():
-        both[0].axhline(-M[0], color="0.4", ls="--", lw=1, label="bonds break")
+        if numpy.nanmax(abs(values)) < 1e-9 * numpy.nanmax(usual):  # rounding
+            axes.set_ylim(-numpy.nanmax(usual), numpy.nanmax(usual))
+    breaks = numpy.where(
+        (M > 0) & ((stiffness > 0) | ~(stiffness > 0).any()) &
+        (M < 3 * abs(contact.at_nodes("gap")).max()),
+        contact.at_nodes("initial_gap") - M, numpy.nan)
+    before = []
+    for piece, x in pieces if (breaks < numpy.inf).any() else ():
+        before = both[0].plot(x, breaks[piece], color="0.4", ls="--", lw=1,
+                              drawstyle="steps-mid", label="bonds break")
+    run.legend(both[0], before, marker="o", ls="", ms=4)
     both[1].set_xlabel(name + length)
     both[1].set_title("positive: pressed, negative: held", fontsize=8,
                       loc="right")
 
 
-def draw_surface(directory, profile, both, length):
+def draw_surface(run, both):
     """Opening and states, in the plane in which the surface is widest."""
-    x = numpy.array([profile[axis] for axis in "xyz"]).T
-    wide = sorted(numpy.argsort(numpy.ptp(x, axis=0))[1:])
-    file = os.path.join(directory, "contact.vtu")
-    if os.path.exists(file):
-        grid = Grid([file])
-        cells = both[0].add_collection(PolyCollection(
-            grid.points[grid.cells][:, :, wide], edgecolors="face"))
-        colour(both[0], cells, grid.in_cells("gap"), "opening" + length)
-    show_nodes(both[1], profile, x[:, wide], max(3., min(20., 8000. / len(x))))
-    for axes in both:
+    contact, length = run.contact, run.units["length"]
+    wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
+    known, free = ~contact.is_unknown, contact.state != "held"
+    opening = colour([both[0]], contact.at_nodes("gap")[known], "opening" + length)
+    for axes, of_shares, which in ((both[0], opening, known),
+                                   (both[1], colours_of(contact.state[free]), free)):
+        axes.add_collection(PolyCollection(
+            contact.polygons[which][:, :, wide], facecolors=of_shares,
+            edgecolors="face", linewidths=0.3, rasterized=len(known) > MOST_VECTORS))
         axes.grid(False)
         axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
         axes.autoscale_view()
     both[1].set_xlabel("xyz"[wide[0]] + length)
+    run.legend(both[1], [], lw=5)
 
 
-def draw_path(directory, wanted):
+def draw_path(run, wanted):
     """A load path: four pictures of it, or the wanted 'Y over X'."""
-    path = read_csv(os.path.join(directory, "load_path.csv"))
+    path = run.load_path
     if not path:
         return
-    arc = read_csv(os.path.join(directory, "load_path_arc.csv"))
-    loads = numpy.ptp(path["factor"]) > 0
-    factor = "factor" if loads else "displacement_factor"
-    kinds = wanted or [f"{y} over {factor}" for y in (
-        "broken_part", "J", "normal_force")] + [
-            "factor over unit_load_work" if loads else
-            "unit_displacement_work over displacement_factor"]
+    arc = read_csv(os.path.join(run.directory, "load_path_arc.csv"))
+    factor = run.factor
+    largest = max((name for name in path if name.startswith("reaction_")),
+                  key=lambda name: numpy.ptp(path[name]), default="normal_force")
+    last = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
+    if factor == "factor":
+        last = ["normal_force over factor", "factor over unit_load_work"]
+    kinds = wanted or [f"broken_part over {factor}", f"J over {factor}", *last]
     figure, all_axes = plt.subplots(
         -(-len(kinds) // 2), min(len(kinds), 2), squeeze=False,
         figsize=(10, 0.6 + 3.4 * -(-len(kinds) // 2)))
@@ -265,18 +357,18 @@ def draw_path(directory, wanted):
                       label="loading" if rises[begin] else "unloading")
         if arc:
             axes.plot(arc[x], arc[y], ":", color="k", lw=1, label="arc")
-        axes.set(xlabel=x, ylabel=y)
+        axes.set(xlabel=words_for(x, run.units), ylabel=words_for(y, run.units))
     for axes in all_axes.flat[len(kinds):]:
         axes.remove()
     all_axes[0, 0].legend()
-    plots.save(figure, directory, "load_path")
+    run.save(figure, "load_path")
 
 
-def draw_history(directory):
+def draw_history(run):
     """J over the iterations; the gap of a proof over time and nodes."""
-    history = read_csv(os.path.join(directory, "history.csv"))
+    history = read_csv(os.path.join(run.directory, "history.csv"))
     J = history.get("functional", [])
-    if len(J) > 2 and J[-1]:
+    if len(J) > 2 and J[-1] and J.max() > J[-1]:
         figure, axes = plt.subplots()
         axes.loglog(numpy.arange(1, len(J)), (J[:-1] - J[-1]) / abs(J[-1]),
                     label="J(x_k) - J(x_K)")
@@ -285,27 +377,32 @@ def draw_history(directory):
                         color="0.6", lw=0.8, label="-v_k, predicted descent")
         axes.set(xlabel="iteration k", ylabel="relative to |J(x_K)|")
         axes.legend()
-        plots.save(figure, directory, "history")
-    proof = read_csv(os.path.join(directory, "proof.csv"))
+        run.save(figure, "history")
+    proof = read_csv(os.path.join(run.directory, "proof.csv"))
     if proof and len(proof["nodes"]) > 2:
         J = proof["functional"]
         figure, both = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True)
         for axes, x in zip(both, ("seconds", "nodes")):
             axes.loglog(proof[x], (J - proof["lower_bound"]) / abs(J), ".-")
             axes.set(xlabel=x, ylabel="gap relative to J")
-        plots.save(figure, directory, "proof")
+        run.save(figure, "proof")
 
 
-def draw(directory, units="", field="von_mises", path=()):
-    """All that a directory has something of. `units`: 'LENGTH, STRESS'."""
-    if not os.path.exists(os.path.join(directory, "summary.json")):
-        raise BadInput(f"{directory} has no summary.json of a run")
-    units = [f", {unit.strip()}" if unit else ""
-             for unit in (units.split(",") + [""])[:2]]
-    draw_body(directory, *units, field)
-    draw_contact(directory, *units)
-    draw_path(directory, path)
-    draw_history(directory)
+def draw(directory, units="", field="von_mises", path=(), view=(), step=0):
+    """All that a directory has something of, or the body and its contact
+    boundary in a step. `units`: 'LENGTH, STRESS'; `view`: degrees."""
+    run = Run(directory, step, units)
+    draw_body(run, field, view)
+    draw_contact(run)
+    if not step:
+        draw_path(run, path)
+        draw_history(run)
+
+
+def angles(text):
+    """AZIMUTH,ELEVATION in degrees."""
+    azimuth, elevation = map(float, text.split(","))
+    return azimuth, elevation
 
 
 def main():
@@ -313,14 +410,22 @@ def main():
         prog="scripts/picture", description="Draws what a run has written, as "
         "PNG and SVG in its directory.")
     parser.add_argument("directories", metavar="DIRECTORY", nargs="+")
-    parser.add_argument("--units", default="", help='as in "mm, MPa"')
+    parser.add_argument("--units", default="", help='of length and stress, as in '
+                        '"mm, MPa"; those of forces and energies follow')
     parser.add_argument("--field", default="von_mises", help="of body.vtu")
     parser.add_argument("--path", default=[], action="append", help="columns of "
                         'load_path.csv, as in "reaction_left_y over factor"')
+    parser.add_argument("--step", type=int, default=0, help="draws the body and "
+                        "the contact boundary in this step of a load path")
+    parser.add_argument("--view", type=angles, metavar="AZIMUTH,ELEVATION",
+                        help="in degrees, where a body in 3D is seen from, as in "
+                        "--view=-65,25; the elevation is over the side that is "
+                        "glued, which is seen if it is negative")
     options = parser.parse_args()
     try:
         for directory in options.directories:
-            draw(directory, options.units, options.field, options.path)
+            draw(directory, options.units, options.field, options.path,
+                 options.view, options.step)
     except BadInput as error:
         print(f"picture: {error}", file=sys.stderr)
         return 2

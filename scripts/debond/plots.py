@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib import ticker
 
-from . import prm
+from . import prm, vtu
 from . import study as studies
 from .runs import read_csv
 
@@ -135,23 +135,6 @@ def axis_of(study):
     return found[-1]
 
 
-def position(profile):
-    """(name, values, whether no two are at one place) of where nodes are along
-    the contact boundary: the coordinate in which it is longest, or the length
-    if it is straight and not parallel to an axis."""
-    axes = [axis for axis in "xyz" if axis in profile]
-    x = numpy.array([profile[axis] for axis in axes]).T
-    x = x - x[numpy.lexsort(x.T[::-1])[0]]
-    longest = numpy.argmax(numpy.ptp(x, axis=0))
-    name, values = axes[longest], profile[axes[longest]]
-    length = numpy.linalg.norm(x, axis=1)
-    straight = numpy.linalg.matrix_rank(x, 1e-6 * (length.max() or 1)) == 1
-    if straight and length.max() > (1 + 1e-9) * numpy.ptp(values):
-        name, values = "length along the contact boundary", length
-    gaps = numpy.diff(numpy.sort(values))
-    return name, values, not len(gaps) or gaps.min() > 1e-9 * length.max()
-
-
 def profiles(rows):
     for row in rows:
         profile = read_csv(row.case.path("contact_profile.csv"))
@@ -161,13 +144,18 @@ def profiles(rows):
 
 def along_contact(plot, study, rows):
     title = "u_nu" if plot.name == "displacement" else "normal_force_density"
-    for row, profile in profiles(rows):
-        name, x, in_a_row = position(profile)
-        plot.axes.set_xlabel(name if len(name) > 1 else
-                             f"{name} along the contact boundary")
-        order = numpy.argsort(x)
-        plot.add(row.case.label, x[order], profile[title][order],
-                 ("-" if title == "u_nu" else "o-") if in_a_row else "o")
+    for row in rows:
+        file = row.case.path("contact.vtu")
+        if row.summary and os.path.exists(file):
+            contact = vtu.Contact(file, row.summary)
+            name, pieces = contact.pieces()
+            plot.axes.set_xlabel(name if len(name) > 1 else
+                                 f"{name} along the contact boundary")
+            line = "o" if contact.dim == 3 else "-" if title == "u_nu" else "o-"
+            values = numpy.where(contact.is_unknown, numpy.nan, contact.at_nodes(title))
+            for k, (piece, x) in enumerate(pieces):
+                plot.add(None if k else row.case.label, x, values[piece], line,
+                         belongs=k > 0)
 
 
 def law(plot, study, rows):

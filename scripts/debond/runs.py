@@ -66,10 +66,10 @@ def read_csv(path):
     return columns
 
 
-def bodies(directory):
+def bodies(directory, name="body"):
     """The files with the displacement: one, or those of several ranks."""
-    files = glob.glob(os.path.join(directory, "body.vtu"))
-    return files or sorted(glob.glob(os.path.join(directory, "body.rank*.vtu")))
+    files = glob.glob(os.path.join(directory, name + ".vtu"))
+    return files or sorted(glob.glob(os.path.join(directory, name + ".rank*.vtu")))
 
 
 @dataclasses.dataclass

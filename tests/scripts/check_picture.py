@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Pictures of a run in 2D, of quadratic displacements, on two ranks and in 3D, of a load
-path and a proof; what meshio reads of the files is what the run found."""
+path and its steps and a proof; what meshio reads of the files is what the run found. What
+pictures of curved sides, several thresholds, two materials and glued sides in 3D show."""
 import json
 import os
 import subprocess
@@ -10,7 +11,7 @@ import numpy
 
 from common import DEBOND, SOURCE, near
 
-from debond import picture, prm
+from debond import picture, prm, vtu
 
 QUADRATIC = ["benchmark-40x4.prm", "Solver/Method=automatic", "Mesh/Degree=2",
              "Contact law/Quadrature=gauss 4", "Probes/end=0.37, 0.04"]
@@ -20,7 +21,8 @@ RUNS = {
     "ranks": QUADRATIC,
     "solid": ["bar-3d.prm", "Solver/Method=automatic"],
     "path": ["benchmark-40x4.prm", "Solver/Method=automatic",
-             "Load path/Factors=0:0.25:1.25, 1:-0.25:0"],
+             "Load path/Factors=0:0.25:1.25, 1:-0.25:0",
+             "Output/Load path body VTU=true"],
     "proof": ["benchmark-40x4.prm", "Solver/Method=majorise minimise",
               "Contact law/Bond stiffness=1e5", "Contact law/Bond threshold=2e-4",
               "Solver/Prove=true"]}
@@ -49,7 +51,7 @@ for name, (scene, *settings) in RUNS.items():
         assert {len(field) for (field,) in mesh.cell_data.values()} == {len(cells)}
         assert len(bodies) == 2 or (
             kind, len(mesh.points)) == GRIDS.get(name, ("triangle", 365))
-    grid = picture.Grid(bodies)
+    grid = vtu.Body(bodies)
     assert len(grid.cells) == summary["cells"]
     u = grid.at_points("displacement")
     near(numpy.linalg.norm(u, axis=1).max(), summary["largest_displacement"],
@@ -73,16 +75,179 @@ for name, (scene, *settings) in RUNS.items():
         grid.cells[owners].tolist() for corner in cell}
 
 # A path by named columns, and a column that there is not.
-picture.draw_path("path", ["contact_reaction_y over mean_top_y"])
+picture.draw_path(picture.Run("path", 0, ""), ["contact_reaction_y over mean_top_y"])
 try:
-    picture.draw_path("path", ["force over factor"])
+    picture.draw_path(picture.Run("path", 0, ""), ["force over factor"])
     raise AssertionError("There is no column force.")
 except prm.BadInput as error:
     assert "contact_reaction_y" in str(error)
 
 # The colours leave out few cells and say which.
 _, axes = picture.plt.subplots()
-cells = axes.add_collection(picture.PolyCollection(numpy.zeros((1000, 3, 2))))
-picture.colour(axes, cells, numpy.append(numpy.linspace(0, 1, 999), 50.), "s")
+picture.colour([axes], numpy.append(numpy.linspace(0, 1, 999), 50.), "s")
 bar = axes.figure.axes[-1].get_xlabel()
 assert bar == "s; 5 cells above 0.996 cut off, the largest is 50", bar
+
+# Words and units of columns: per thickness in 2D.
+for text, dim, force, energy in (
+        ("mm, MPa", 2, ", N/mm", ", N mm/mm"), ("mm, N/mm^2", 3, ", N", ", N mm"),
+        ("m, GPa", 2, ", GN/m", ", GN m/m"), ("in, psi", 3, ", psi in²", ", psi in² in"),
+        ("mm", 3, "", ""), ("", 2, "", "")):
+    units = picture.endings(text, dim)
+    assert (units["force"], units["energy"]) == (force, energy), units
+units = picture.endings("mm, MPa", 2)
+for column, words in (("reaction_upper_end_y", "force of support upper end, y, N/mm"),
+                      ("mean_top_x", "mean displacement of top, x, mm"),
+                      ("largest_gap", "largest opening, mm"), ("J", "J, N mm/mm"),
+                      ("broken_zone", "size of the broken zone, mm"),
+                      ("force_imbalance", "force imbalance")):
+    assert picture.words_for(column, units) == words, picture.words_for(column, units)
+
+
+def figures(scene, *settings, **options):
+    """Of a run: the figures by their names, in place of files."""
+    if scene:
+        subprocess.run([DEBOND, SOURCE / "prm" / scene] + [
+            word for setting in [*settings, "Output/Directory=run",
+                                 "Solver/Method=automatic"]
+            for word in ("--set", setting)], check=True, stdout=subprocess.DEVNULL)
+    picture.plt.close("all")
+    drawn = {}
+    save, picture.plots.save = picture.plots.save, (
+        lambda figure, directory, name: drawn.update({name: figure}))
+    picture.draw(options.pop("directory", "run"), **options)
+    picture.plots.save = save
+    return drawn
+
+
+def legend(figure):
+    (words,) = [[text.get_text() for text in axes.get_legend().get_texts()]
+                for axes in figure.axes if axes.get_legend()]
+    return words
+
+
+def read_contact(file="run/contact.vtu"):
+    with open(os.path.dirname(file.replace("load_path/", "")) + "/summary.json") as summary:
+        return vtu.Contact(file, json.load(summary))
+
+
+def breaks(figure):
+    """The thresholds that the contact picture shows."""
+    return {round(float(-y), 6) for line in figure.axes[0].lines if line.get_label() == "bonds break"
+            for y in line.get_ydata() if y < 0}
+
+
+# Where nodes are along curved sides, around corners and on several sides.
+for scene, settings, name, pieces, length in (
+        ("cookbook/ring.prm", [], "length along the contact boundary", 1, numpy.pi * 10),
+        ("hard/two-sides.prm", [], "length along the contact boundary", 1, 0.44),
+        ("hard/two-sides.prm", ["Boundary conditions/Contact boundary=left, right",
+                                "Boundary conditions/Clamped boundaries=bottom"],
+         "y", 2, 0.04),
+        ("hard/two-sides.prm", ["Boundary conditions/Contact boundary=left, top",
+                                "Boundary conditions/Clamped boundaries=bottom",
+                                "Mesh/Rotation=30"],
+         "length along the contact boundary", 1, 0.44),
+        ("benchmark-40x4.prm", ["Boundary conditions/Contact boundary=bottom, top",
+                                "Loads/Traction top="], "x", 2, 0.4)):
+    drawn = figures(scene, *settings)
+    found, along = read_contact().pieces()
+    assert found == name and len(along) == pieces, (found, len(along))
+    near(max(x[-1] for _, x in along), length, 1e-3)
+    assert all((numpy.diff(x) >= 0).all() for _, x in along)
+    nodes = read_contact().nodes
+    for piece, x in along:  # from node to node
+        steps = numpy.linalg.norm(numpy.diff(nodes[piece], axis=0), axis=1)
+        assert abs(steps - numpy.diff(x)).max() < 1e-5
+    assert drawn["contact"].axes[1].get_xlabel() == name
+
+# Bonds break where there are bonds, at their thresholds.
+BENCH = "benchmark-40x4.prm"
+for settings, thresholds in (
+        ([], {0.002}), (["Contact law/Law=none"], set()),
+        (["Contact law/Bond stiffness=0"], set()),
+        (["Contact law/Bond stiffness=if(x > 0.2, 69, 0)"], {0.002}),
+        (["Contact law/Bond threshold=if(x > 0.2, 0.002, 0.004)"], {0.002, 0.004})):
+    drawn = figures(BENCH, *settings)
+    assert breaks(drawn["contact"]) == thresholds, (settings, breaks(drawn["contact"]))
+    assert ("bonds break" in legend(drawn["contact"])) == bool(thresholds)
+ends = figures(BENCH, "Contact law/Bond stiffness=if(x > 0.2, 69, 0)")["contact"].axes[0]
+(line,) = [line for line in ends.lines if line.get_label() == "bonds break"]
+assert line.get_xdata()[numpy.isfinite(line.get_ydata())].min() > 0.2
+
+# Any name of a state has a colour and is in the legend.
+drawn = figures(BENCH)
+assert {"at rest", "bonded (6)"} <= set(legend(drawn["body"])), legend(drawn["body"])
+own = vtu.Contact.__init__
+
+
+def renamed(contact, *arguments):
+    own(contact, *arguments)
+    contact.state = numpy.where(contact.state == "bonded", "a new one", contact.state)
+
+
+vtu.Contact.__init__ = renamed
+assert "a new one (6)" in legend(figures("")["body"])
+vtu.Contact.__init__ = own
+
+
+def cells(axes):
+    return next(c for c in axes.collections if isinstance(c, picture.PolyCollection))
+
+
+# Lines of cells where these are large; lines between materials.
+for n, is_dark in (("40, 4", True), ("400, 40", False)):
+    drawn = cells(figures(BENCH, "Mesh/Cells=" + n)["body"].axes[0])
+    first = drawn.get_facecolor()[0], drawn.get_edgecolor()[0]
+    assert (first[1][:3] < 0.8 * first[0][:3]).all() == is_dark, first
+two = ["Parts/upper=y > 0.02", "Material/Young modulus upper=7"]
+drawn = cells(figures(BENCH, *two)["body"].axes[0])
+body = vtu.Body(["run/body.vtu"])
+lines = body.points[body.borders(body.cells, numpy.arange(len(body.cells)))]
+assert lines.shape == (40, 2, 3) and numpy.allclose(lines[:, :, 1], 0.02)
+black = (drawn.get_facecolor() == (0, 0, 0, 1)).all(axis=1).sum()
+assert black == 40 + 2 * (40 + 4), black
+
+# In 3D: up is away from the glued side, which one of the views is of.
+for side, normal in (("bottom", (0, -1, 0)), ("top", (0, 1, 0)), ("front", (0, 0, 1))):
+    settings = [f"Boundary conditions/Contact boundary={side}", "Mesh/Cells=10, 2, 2",
+                "Loads/Traction top=", "Parts/middle=x > 0.1 && x < 0.3",
+                "Material/Young modulus middle=7"]
+    drawn = figures("bar-3d.prm", *settings)["body"]
+    body, contact = vtu.Body(["run/body.vtu"]), read_contact()
+    above, below = picture.views(body, contact, None)
+    for view in above, below:
+        assert numpy.allclose(view @ view.T, numpy.eye(3))
+        near(numpy.linalg.det(view), 1, 1e-12)
+        assert view[1] @ normal < -0.5 and abs(view[0] @ normal) < 1e-12
+    assert above[2] @ normal < 0 < below[2] @ normal
+    colours = [set(map(tuple, cells(axes).get_facecolor())) for axes in drawn.axes[:2]]
+    (blue,) = picture.colours_of(["contact"])
+    assert blue in colours[1] and blue not in colours[0]
+    assert (0, 0, 0, 1) in colours[0]  # between the materials
+    one = figures("", view=(30., 40.))["body"]
+    assert len(one.axes) == 2 and len(picture.views(body, contact, (30, 40))) == 1
+box = [text.get_text() for text in drawn.axes[0].texts]
+assert box == ["x: 0.4", "y: 0.04", "z: 0.04"], box
+
+# A step of a load path: its states, its title, and what it needs.
+path = picture.read_csv("path/load_path.csv")
+step = int(path["broken_part"].argmax()) + 1
+assert 1 < step < len(path["step"])
+drawn = figures("", directory="path", step=step, units="m, GPa")
+assert set(drawn) == {f"body-{step}", f"contact-{step}"}, set(drawn)
+title = f"step {step} of {len(path['step'])}, load factor {path['factor'][step - 1]:.4g}"
+assert drawn[f"body-{step}"].axes[0].get_title().startswith(title + "\ndisplacement x ")
+contact = read_contact(f"path/load_path/contact-{step:05d}.vtu")
+near((contact.state == "broken").sum() / (contact.state != "held").sum(),
+     path["broken_part"][step - 1], 0.05)
+broken = len({tuple(node) for node in contact.nodes[contact.state == "broken"]})
+for figure in drawn.values():
+    assert f"broken ({broken})" in legend(figure), legend(figure)
+picture_of = [SOURCE / "scripts" / "picture", "path", "--step"]
+beyond = subprocess.run([*picture_of, "99"], capture_output=True, text=True)
+assert beyond.returncode == 2 and "no step 99" in beyond.stderr, beyond.stderr
+os.remove(f"path/load_path/body-{step:05d}.vtu")
+half = subprocess.run([*picture_of, str(step)], capture_output=True, text=True)
+assert half.returncode == 0 and "Output/Load path body VTU = true" in half.stderr
+assert half.stdout == f"path/contact-{step}.png\n", half.stdout
