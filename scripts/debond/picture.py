@@ -96,12 +96,13 @@ class Run:
         self.contact = vtu.Contact(files[0], self.summary) if files else None
 
     def files(self, name):
-        found = bodies(self.directory, f"load_path/{name}-{self.step:05d}"
-                       if self.step else name)
+        file, entry = name, name.capitalize()
+        if self.step:
+            file, entry = f"load_path/{name}-{self.step:05d}", f"Load path {name}"
+        found = bodies(self.directory, file)
         if not found:
-            entry = f"Load path {name}" if self.step else name.capitalize()
-            print(f"picture: {self.directory} has no {name}{self.step or ''}: it "
-                  f"needs Output/{entry} VTU = true", file=sys.stderr)
+            print(f"picture: {self.directory} has no {file}.vtu: the run needs "
+                  f"Output/{entry} VTU = true", file=sys.stderr)
         return found
 
     def save(self, figure, name):
@@ -188,7 +189,7 @@ def draw_body(run, field, wanted):
         else:
             before = [axes.add_collection(LineCollection(
                 body.points[body.boundary()[0]][:, :, :2], colors="0.6",
-                linewidths=0.8, label="at rest"))]
+                linewidths=0.8, zorder=0.5, label="at rest"))]
             axes.set(xlabel="x" + length, ylabel="y" + length)
         axes.set_aspect("equal")
         axes.grid(False)
@@ -213,10 +214,14 @@ def draw_panel(axes, run, body, moved, colours, pixels):
         seen = normal[:, 2] * (normal * inwards).sum(axis=1) < 0
         faces, owners = triangles, cells = faces[seen], owners[seen]
     lines = body.borders(triangles, cells)
+    parts, states = run.contact.shares(body.points[faces], moved[faces]) \
+        if run.contact else (moved[:0, None], [])
+    of_states = colours_of(states)
     if body.dim == 2:
         lines = numpy.concatenate([lines, faces])
-    parts, states = run.contact.shares(body.points[faces], moved[faces]) \
-        if run.contact else ([], [])
+        axes.add_collection(LineCollection(
+            parts[:, :, :2], colors=of_states, linewidths=3., capstyle="round"))
+        parts = []
 
     corners, colours = moved[triangles], colours[cells]
     sides = (numpy.roll(corners, 1, axis=1) - corners)[:, :, :2]
@@ -224,20 +229,19 @@ def draw_panel(axes, run, body, moved, colours, pixels):
         numpy.linalg.norm(sides, axis=2).max(axis=1) + 1e-300)
     edges = colours.copy()
     edges[:, :3] *= 1 - 0.35 * numpy.clip((height - 4.) / 6., 0., 1.)[:, None]
-    of_states = colours_of(states)
     black, nearer = [(0., 0., 0., 1.)] * len(lines), 0.02 * body.size
     drawn = [(polygon[:, :2], fill, edge, width, polygon[:, 2].mean() + near)
              for *layer, width, near in (
                  (corners, colours, edges, 0.3, 0.),
                  (moved[lines], black, black, 0.6, 1.1 * nearer),
-                 (parts, of_states, of_states, 3. if body.dim == 2 else 0.3, nearer))
+                 (parts, of_states, of_states, 0.3, nearer))
              for polygon, fill, edge in zip(*layer)]
     if body.dim == 3:
         drawn.sort(key=lambda one: one[-1])
     polygons, fill, edges, widths, _ = zip(*drawn)
     axes.add_collection(PolyCollection(
         polygons, facecolors=fill, edgecolors=edges, linewidths=widths,
-        joinstyle="bevel", rasterized=len(drawn) > MOST_VECTORS))
+        snap=False, rasterized=len(drawn) > MOST_VECTORS))
 
 
 def draw_box(axes, points, panel, length):
@@ -278,7 +282,7 @@ def draw_line(run, both):
     contact, length = run.contact, run.units["length"]
     name, pieces = contact.pieces()
     # Where bonds are, which have no stiffness if they are rigid at first.
-    M, stiffness = contact.at_nodes("bond_threshold"), contact.at_nodes("bond_stiffness")
+    M, stiffness = map(contact.at_nodes, ("bond_threshold", "bond_stiffness"))
     for axes, key, label, usual in (
             (both[0], "u_nu", "normal displacement" + length, M),
             (both[1], "normal_force_density", "normal force density" +
