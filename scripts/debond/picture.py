@@ -234,7 +234,7 @@ def draw_panel(axes, run, body, moved, colours, pixels):
              for *layer, width, near in (
                  (corners, colours, edges, 0.3, 0.),
                  (moved[lines], black, black, 0.6, 1.1 * nearer),
-                 (parts, of_states, of_states, 0.3, nearer))
+                 (parts, of_states, of_states, 0.8, nearer))
              for polygon, fill, edge in zip(*layer)]
     if body.dim == 3:
         drawn.sort(key=lambda one: one[-1])
@@ -322,7 +322,7 @@ def draw_surface(run, both):
                                    (both[1], colours_of(contact.state[free]), free)):
         axes.add_collection(PolyCollection(
             contact.polygons[which][:, :, wide], facecolors=of_shares,
-            edgecolors="face", linewidths=0.3, rasterized=len(known) > MOST_VECTORS))
+            edgecolors="face", linewidths=0.8, rasterized=len(known) > MOST_VECTORS))
         axes.grid(False)
         axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
         axes.autoscale_view()

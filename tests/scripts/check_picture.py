@@ -169,6 +169,11 @@ for settings, thresholds in (
         (["Contact law/Bond stiffness=if(x > 0.2, 69, 0)"], {0.002}),
         (["Contact law/Bond threshold=if(x > 0.2, 0.002, 0.004)"], {0.002, 0.004})):
     drawn = figures(BENCH, *settings)
+    contact, profile = read_contact(), picture.read_csv("run/contact_profile.csv")
+    states = {round(float(x), 4): state for x, state in zip(contact.nodes[:, 0],
+                                                            contact.state)}
+    assert states == {0: "held", 0.4: "held", **dict(zip(
+        profile["x"].round(4).tolist(), profile["state"]))}, states
     assert breaks(drawn["contact"]) == thresholds, (settings, breaks(drawn["contact"]))
     assert ("bonds break" in legend(drawn["contact"])) == bool(thresholds)
 ends = figures(BENCH, "Contact law/Bond stiffness=if(x > 0.2, 69, 0)")["contact"].axes[0]
@@ -251,3 +256,8 @@ os.remove(f"path/load_path/body-{step:05d}.vtu")
 half = subprocess.run([*picture_of, str(step)], capture_output=True, text=True)
 assert half.returncode == 0 and "Output/Load path body VTU = true" in half.stderr
 assert half.stdout == f"path/contact-{step}.png\n", half.stdout
+
+# A path that is unloaded ends with a picture of what has come off.
+drawn = figures(BENCH, "Load path/Factors=1, 0", "Load path/Bonds heal=false")
+for name in "body", "contact":
+    assert any(word.startswith("broken but closed (") for word in legend(drawn[name]))
