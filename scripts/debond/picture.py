@@ -134,9 +134,9 @@ def views(body, contact, wanted):
     axis, away, angles = 1, 1., [FROM_ABOVE]
     if contact:
         axis = numpy.argmin(numpy.ptp(contact.nodes, axis=0))
-        heights = body.points[:, axis] - contact.nodes[:, axis].mean()
-        away = -1. if heights.mean() < 0 else 1.
-        if (away * heights).min() > -1e-6 * body.size:
+        of_body, of_contact = body.points[:, axis], contact.nodes[:, axis]
+        away = -1. if of_body.mean() < of_contact.mean() else 1.
+        if (away * of_body).min() > (away * of_contact).min() - 1e-6 * body.size:
             angles = [FROM_ABOVE, FROM_BELOW]
     up = away * numpy.eye(3)[axis]
     across = numpy.eye(3)[numpy.argmax(numpy.ptp(body.points, axis=0) * (up == 0))]

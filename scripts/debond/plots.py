@@ -135,13 +135,6 @@ def axis_of(study):
     return found[-1]
 
 
-def profiles(rows):
-    for row in rows:
-        profile = read_csv(row.case.path("contact_profile.csv"))
-        if row.summary and profile:
-            yield row, profile
-
-
 def along_contact(plot, study, rows):
     title = "u_nu" if plot.name == "displacement" else "normal_force_density"
     for row in rows:
@@ -161,7 +154,10 @@ def along_contact(plot, study, rows):
 def law(plot, study, rows):
     """Nodes, and the graph of the law where bonds are the same everywhere."""
     graphs = {}
-    for row, profile in profiles(rows):
+    for row in rows:
+        profile = read_csv(row.case.path("contact_profile.csv"))
+        if not (row.summary and profile):
+            continue
         u, density = profile["u_nu"], profile["normal_force_density"]
         a, M = profile["bond_stiffness"], profile["bond_threshold"]
         plot.add(row.case.label, u, density, "o")
