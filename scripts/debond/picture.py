@@ -67,6 +67,7 @@ def endings(text, dim):
 
 
 def words_for(column, units):
+    """The label of an axis with a column of load_path.csv."""
     found, words, what = next(
         (found, words, what) for pattern, words, what in COLUMNS
         if (found := re.fullmatch(pattern, column)))
@@ -225,7 +226,7 @@ def draw_panel(axes, run, body, moved, colours, pixels):
 
     corners, colours = moved[triangles], colours[cells]
     sides = (numpy.roll(corners, 1, axis=1) - corners)[:, :, :2]
-    height = pixels * abs(numpy.cross(sides[:, 0], sides[:, 1])) / (
+    height = pixels * abs(numpy.linalg.det(sides[:, :2])) / (
         numpy.linalg.norm(sides, axis=2).max(axis=1) + 1e-300)
     edges = colours.copy()
     edges[:, :3] *= 1 - 0.35 * numpy.clip((height - 4.) / 6., 0., 1.)[:, None]

@@ -67,7 +67,7 @@ def read_csv(path):
 
 
 def bodies(directory, name="body"):
-    """The files with the displacement: one, or those of several ranks."""
+    """The .vtu files of this name: one, or those of several ranks."""
     files = glob.glob(os.path.join(directory, name + ".vtu"))
     return files or sorted(glob.glob(os.path.join(directory, name + ".rank*.vtu")))
 

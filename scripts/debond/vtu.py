@@ -73,11 +73,11 @@ class Contact:
         self.first = self.mesh.cells[0].data[:, 0]
         self.nodes = self.mesh.points[self.first]
         self.polygons = self.mesh.points[self.mesh.cells[0].data]
-        self.names = list(summary["bond_states"])
-        zero = self.names.index("contact")  # the number of which is 0
-        self.names.insert(zero + 5, "held")
+        names = list(summary["bond_states"])
+        zero = names.index("contact")  # the number of which is 0
+        names.insert(zero + 5, "held")
         numbers = self.mesh.cell_data["bond_state"][0].astype(int).ravel()
-        self.state = numpy.array(self.names)[zero + numbers]
+        self.state = numpy.array(names)[zero + numbers]
         # Held nodes have no u_nu, and in the middle of edges with held ends it
         # is that of ends at rest.
         self.is_unknown = self.state == "held"
@@ -117,9 +117,9 @@ class Contact:
         if self.dim == 3:
             axis = numpy.argmax(numpy.ptp(self.nodes, axis=0))
             return "xyz"[axis], [(range(len(self.nodes)), self.nodes[:, axis])]
-        _, place = numpy.unique(self.nodes, axis=0, return_inverse=True)
+        place = numpy.unique(self.nodes, axis=0, return_inverse=True)[1].ravel()
         at = [[] for _ in place]
-        for share, k in enumerate(place.ravel()):
+        for share, k in enumerate(place):
             at[k].append(share)
         pieces, left = [], set(range(len(place)))
         for start in sorted(left, key=lambda i: (len(at[place[i]]) > 1, place[i])):
