@@ -265,7 +265,7 @@ namespace Debond
       const bool is_euclidean       = p.solver.method == "euclidean bundle";
       const bool is_energy          = p.solver.method == "energy bundle";
       const bool has_path           = !p.load_path.factors.empty();
-      const bool has_branches = has_path && p.load_path.has_global_branch() &&
+      const bool has_branches       = has_path && p.load_path.bonds_heal &&
                                 p.load_path.global_branch != GlobalBranch::none;
       const bool searches = has_path ? has_branches :
                             search == BondSearchChoice::automatic ?

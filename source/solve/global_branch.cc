@@ -25,16 +25,17 @@ namespace Debond
       }
 
       void
-      search(const double factor, BranchPoint &point)
+      search(const LoadFactors factors, BranchPoint &point)
       {
-        point.which = improve(parameters, factor, point);
-        // Without loads no energy is negative.
-        if (factor == 0. && !scene.scene.problem().unknowns().has_gap())
+        point.which = improve(parameters, factors, point);
+        // Where nothing is applied or prescribed, no gap either, no energy is
+        // negative.
+        if (scene.scene.problem().load(factors).linfty_norm() == 0.)
           point.which.kind = MinimumKind::global;
       }
 
       void
-      prove(const double factor, BranchPoint &point)
+      prove(const LoadFactors factors, BranchPoint &point)
       {
         if (point.which.kind == MinimumKind::global)
           return;
@@ -45,7 +46,7 @@ namespace Debond
         proof.search           = BondSearchChoice::none;
         proof.prove            = true;
         const MinimumKind kind = point.which.kind;
-        point.which            = improve(proof, factor, point);
+        point.which            = improve(proof, factors, point);
         if (point.which.kind != MinimumKind::global)
           point.which.kind = kind;
       }
@@ -53,11 +54,11 @@ namespace Debond
       /// Takes what majorise-minimise finds from @p neighbour if that is lower.
       bool
       start_from(const BranchPoint &neighbour,
-                 const double       factor,
+                 const LoadFactors  factors,
                  BranchPoint       &point)
       {
-        const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
-        const Condensation          condensed = scene.at(factor);
+        const AdhesionIntegral<dim> bonds     = scene.bonds(factors);
+        const Condensation          condensed = scene.at(factors);
         // If the neighbour's minimum lives on under this load,
         // majorise-minimise finds it within a few steps.
         Eigen::VectorXd  s = neighbour.s;
@@ -81,11 +82,11 @@ namespace Debond
     private:
       WhichMinimum
       improve(const SolverParameters &what,
-              const double            factor,
+              const LoadFactors       factors,
               BranchPoint            &point)
       {
-        const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
-        const Condensation          condensed = scene.at(factor);
+        const AdhesionIntegral<dim> bonds     = scene.bonds(factors);
+        const Condensation          condensed = scene.at(factors);
         WhichMinimum                which =
           find_better_minimum(what, bonds, condensed, interruption, point.s);
         point.functional =
@@ -95,7 +96,7 @@ namespace Debond
         if (which.proof_attempted)
           round_outwards(point.functional + condensed.energy_at_zero(),
                          rounding_of_energy(scene.scene.problem(),
-                                            factor,
+                                            factors,
                                             condensed.expand(point.s)),
                          which);
         return which;
@@ -123,22 +124,22 @@ namespace Debond
 
     // Minima live on over intervals of factors, so the lowest one at a factor
     // is often known from its neighbour. The way up hands on states of small
-    // loads (mostly bonded), the way down those of large loads (mostly broken).
-    // Proofs come last, since a proof about a state that is replaced afterwards
-    // would be lost.
+    // factors (mostly bonded), the way down those of large ones (mostly
+    // broken). Proofs come last, since a proof about a state that is replaced
+    // afterwards would be lost.
     Branch             branch;
     const BranchPoint *last = nullptr;
-    for (const auto &[factor, given] : start)
+    for (const auto &[factors, given] : start)
       {
         if (interruption.requested())
           return branch;
         BranchPoint point = given;
         if (last != nullptr)
-          search.start_from(*last, factor, point);
-        search.search(factor, point);
-        last = &(branch[factor] = point);
+          search.start_from(*last, factors, point);
+        search.search(factors, point);
+        last = &(branch[factors] = point);
         if (!proves)
-          monitor(factor, point);
+          monitor(factors, point);
       }
 
     last = nullptr;
@@ -148,13 +149,13 @@ namespace Debond
           return branch;
         // A full search is worth its time only where the neighbour has given
         // something new.
-        auto &[factor, point] = *entry;
-        if (last != nullptr && search.start_from(*last, factor, point))
-          search.search(factor, point);
+        auto &[factors, point] = *entry;
+        if (last != nullptr && search.start_from(*last, factors, point))
+          search.search(factors, point);
         if (proves)
           {
-            search.prove(factor, point);
-            monitor(factor, point);
+            search.prove(factors, point);
+            monitor(factors, point);
           }
         last = &point;
       }

@@ -170,7 +170,7 @@ namespace Debond
       bool
       has_global_branch() const
       {
-        return condensed != nullptr && parameters.has_global_branch() &&
+        return condensed != nullptr && parameters.bonds_heal &&
                scene.problem().unknowns().is_held_by_supports();
       }
 
@@ -190,15 +190,15 @@ namespace Debond
         Branch                    followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
-            const double      factor = steps[k].factor;
-            const BranchPoint point  = {
-               points[k],
-               condensed_functional(condensed_problem(condensed_scene.at(factor),
-                                                     condensed_scene.bonds(
-                                                       factor)),
-                                   points[k]),
-               {}};
-            const auto [entry, is_new] = followed.emplace(factor, point);
+            const LoadFactors factors = steps[k].factors();
+            const BranchPoint point   = {
+                points[k],
+                condensed_functional(
+                condensed_problem(condensed_scene.at(factors),
+                                  condensed_scene.bonds(factors)),
+                points[k]),
+                {}};
+            const auto [entry, is_new] = followed.emplace(factors, point);
             if (!is_new && point.functional < entry->second.functional)
               entry->second = point;
           }
@@ -212,17 +212,17 @@ namespace Debond
           condensed_scene,
           followed,
           interruption,
-          [&](const double factor, const BranchPoint &point) {
+          [&](const LoadFactors factors, const BranchPoint &point) {
             table.row(
-              factor,
-              point.functional + condensed_scene.at(factor).energy_at_zero(),
+              factors,
+              point.functional + condensed_scene.at(factors).energy_at_zero(),
               proves ?
                 std::stod(scientific_above(point.which.relative_gap, 2)) :
                 point.which.search_trials,
               to_string(point.which.kind));
           });
-        for (const auto &[factor, point] : branch)
-          add_global(factor, point);
+        for (const auto &[factors, point] : branch)
+          add_global(factors, point);
         if (interruption.requested())
           interrupt("the global branch is not complete");
         result.parts["global branch"] = timer.wall_time();
@@ -432,21 +432,22 @@ namespace Debond
         return Debond::location(parameters, step);
       }
 
-      /// Enters a point of the global branch at all steps with its factor.
+      /// Enters a point of the global branch at all steps with its factors.
       void
-      add_global(const double factor, const BranchPoint &point)
+      add_global(const LoadFactors factors, const BranchPoint &point)
       {
         const CondensedScene<dim>   condensed_scene = {scene, *condensed};
-        const AdhesionIntegral<dim> bonds_there = condensed_scene.bonds(factor);
-        DofVector u = condensed_scene.at(factor).expand(point.s);
-        refine(bonds_there, factor, *solver->correction(), u);
-        VerifiedState<dim>  state(scene, bonds_there, factor, u);
+        const AdhesionIntegral<dim> bonds_there =
+          condensed_scene.bonds(factors);
+        DofVector u = condensed_scene.at(factors).expand(point.s);
+        refine(bonds_there, factors, *solver->correction(), u);
+        VerifiedState<dim>  state(scene, bonds_there, factors, u);
         LoadPathState<dim> &global   = state.state;
         const bool          verified = is_verified(state.verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
         for (unsigned int k = 0; k < steps.size(); ++k)
-          if (steps[k].factor == factor)
+          if (steps[k].factors() == factors)
             {
               LoadPathStep<dim> &step = steps[k];
               step.global             = global;
@@ -521,9 +522,8 @@ namespace Debond
     followed.result = path.take_result();
     if (wants_branch && !path.has_global_branch())
       followed.result.notes.push_back(
-        "There is no global branch: it is for one factor, bonds that heal, a "
-        "direct linear solver and bodies that not only bonds and the "
-        "foundation hold.");
+        "There is no global branch: it is for bonds that heal, a direct linear "
+        "solver and bodies that not only bonds and the foundation hold.");
     followed.progress = std::move(path.progress);
     return followed;
   }

@@ -107,10 +107,8 @@ namespace Debond
                "follows minima that need not be global: in place of "
                "Solver/Prove = true use Load path/Global branch = prove");
       if (problem.load_path.global_branch == GlobalBranch::prove &&
-          !problem.load_path.has_global_branch())
-        refuse("Global branch",
-               "= prove needs bonds that heal and the same factors for "
-               "prescribed displacements");
+          !problem.load_path.bonds_heal)
+        refuse("Global branch", "= prove needs Load path/Bonds heal = true");
       if (problem.load_path.global_branch == GlobalBranch::prove &&
           problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
         refuse("Global branch",

@@ -55,6 +55,13 @@ def check_different_strips():
             close(name + ", least", result["functional"], least, 1e-10)
             check(name + " is proved", result["proof"]["status"] == "proved")
             check(name + ", balance", result["force_imbalance"] < 1e-10)
+        # One path, on which the displacements at the end stay the last ones.
+        path = solve(*scene, "Load path/Displacement factors=" + ", ".join(
+            repr(factor / rows[-1][0]) for factor, *_ in rows),
+                     "Load path/Global branch=prove")["path"]
+        for row, (factor, _, least) in zip(path, rows, strict=True):
+            close(f"{tangential}, {factor}, on a path", row["global_J"], least, 1e-10)
+            check("is proved", row["global_minimum"] == "global")
 
 
 def turned(entry, degrees):

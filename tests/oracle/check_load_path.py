@@ -142,7 +142,8 @@ def check_broken_but_closed(dim, quadrature, degree):
 
 def check_moved_column(dim, name, n_steps, *entries):
     """Pulled by its top, it has a linear way from the displacement d = 0 to the snap at
-    M (1 + a/k), has no force then, and closes at M."""
+    M (1 + a/k), has no force then, and closes at M. The least J is that without bonds from
+    M sqrt(1 + a/k) on."""
     scenes.section(f"Column moved in {dim}D, {name}")
     path = column(dim, *moved(dim), *entries)["path"]
     area, snap, broken = area_of(dim), M * (1. + a / k), False
@@ -153,9 +154,15 @@ def check_moved_column(dim, name, n_steps, *entries):
         broken = d > M if broken else d > snap
         if broken != was_broken:
             close("snap or closing", row["change_factor"], snap if broken else M, 1e-12, snap)
-        stiffness = k if d < 0. else 0. if broken else k * a / (k + a)
-        close("J", row["J"], area * (0.5 * stiffness * d * d + 0.5 * a * M * M * broken), 1e-12,
-              area * a * M * M)
+        bonded = k if d < 0. else k * a / (k + a)
+        stiffness, least = 0. if broken else bonded, d > M * math.sqrt(1. + a / k)
+        for prefix, off in (("", broken), ("global_", least)):
+            close(prefix + "J", row[prefix + "J"], 0.5 * area * (
+                a * M * M if off else bonded * d * d), 1e-12, area * a * M * M)
+            close(prefix + "broken part", row[prefix + "broken_part"], off, 1e-12, 1.)
+        known = "global" if d == 0. or "prove" in entries[-1] else "best known"
+        check("words", row["global_minimum"] == known and row["minimum"] == (
+            known if broken == least else "local minimum"), row)
         close("dJ/d(factor)", row["unit_displacement_work"], area * stiffness * d, 1e-11,
               area * a * M)
 
@@ -173,7 +180,31 @@ def check_moved_columns(dim, quadrature):
                        "Boundary conditions/Roller boundaries=left" + ", back" * (dim == 3),
                        "Boundary conditions/Displacement top=free; 1" + free,
                        "Load path/Displacement factors="
-                       "0:0.011:0.099, -0.01, 0.03, 0.05, 0.2, 0, 0.1")
+                       "0:0.011:0.099, -0.01, 0.03, 0.05, 0.2, 0, 0.1",
+                       "Load path/Global branch=prove")
+
+
+def check_pulled_and_moved(dim):
+    """By t on its bottom and d of its top, each with factors of its own, of which some come
+    twice: as by t + k d alone, but for k d^2 / 2. Loads may also be dead."""
+    area, pulls, moves = area_of(dim), (0., 0.5, 1.1, 1.1, -1., 1.5, 0.5, 1.1), (
+        0., 0., 0., 0.021, 0.021, 0.012, 0., -0.01)
+    entries = [*moved(dim), "Loads/Traction bottom=0; 1" + "; 0" * (dim == 3)]
+    for name, factors, *others in (
+            ("both vary", ", ".join(map(str, pulls)), "Load path/Global branch=prove"),
+            ("dead loads", "0", "Load path/Dead loads=bottom", "Contact law/Quadrature=gauss 2")):
+        scenes.section(f"Column pulled and moved in {dim}D, {name}")
+        path = column(dim, *entries, "Load path/Factors=" + factors, *others,
+                      "Load path/Displacement factors=" + ", ".join(map(str, moves)))["path"]
+        check("all steps verify", [row["status"] for row in path] == 8 * ["success"])
+        for row, pull, d in zip(path, pulls if "," in factors else 8 * [1.], moves):
+            P = pull + k * d
+            least = min(0., -P * max(0., P) / (2. * (k + a)),
+                        0.5 * a * M * M - P * max(0., P) / (2. * k))
+            close("least J", row["global_J"], area * (0.5 * k * d * d + least), 1e-12,
+                  area * a * M * M)
+            check("word", row["global_minimum"] == (
+                "global" if "," in factors else "best known"), row["global_minimum"])
 
 
 def check_without_pressure(dim):
@@ -543,7 +574,8 @@ def check_search_beside_path():
 scenes.together(*(("", *check) for check in (
     *((test, dim, *others) for dim in (2, 3) for test, *others in (
         [check_column], [check_column, "Mesh/Degree=2", "Contact law/Quadrature=gauss 3"],
-        [check_moved_columns, f"gauss {5 - dim}"], [check_without_pressure],
+        [check_moved_columns, f"gauss {5 - dim}"], [check_pulled_and_moved],
+        [check_without_pressure],
         [check_column_arc, False], [check_column_arc, True])),
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),

@@ -269,11 +269,11 @@ def check_path(scene, body, draw):
     with open("output/load_path.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     require(len(rows) == 3, "wrong success: load_path.csv", f"{len(rows)} rows")
-    before = EXACT(1)
+    before = [EXACT(1), EXACT(1)]
     for row in rows:
-        factor = EXACT(row["factor"])
-        scene.scale_loads(float(factor / before), float(factor / before))
-        before = factor
+        factors = [EXACT(row["factor"]), EXACT(row["displacement_factor"])]
+        scene.scale_loads(*(float(a / b) for a, b in zip(factors, before)))
+        before = factors
         body.set_loads()
         minima, are_all = body.all_minima(draw)
         if not are_all or body.pushes_into_foundation():
@@ -283,7 +283,7 @@ def check_path(scene, body, draw):
         gain = values[0] - body.condensed_functional([ZERO] * len(body.contact_dofs))
         error = BETTER * (abs(gain) + body.bonds_can_change()) + EXACT("1e-11") * (
             abs(J) + abs(body.constant))
-        detail = f"factor {factor}, J {J}, global {J_global}, minima {list(map(float, values))}"
+        detail = f"factors {factors}, J {J}, global {J_global}, minima {list(map(float, values))}"
         require(any(abs(J - value) <= error for value in values),
                 "wrong success: path, not a minimum", detail)
         require(J_global >= values[0] - error and J_global <= J + error

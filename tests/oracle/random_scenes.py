@@ -512,6 +512,9 @@ class Scene:
         if is_condensed and not is_proved and not method.startswith("energy") and (
                 draw.chance(0.2)):
             self.set("Load path/Factors", "0.3, 0.7, 1")
+            if self.moved and draw.chance(0.7):
+                self.set("Load path/Factors", draw.choice(["1", "0.6, 0.2, 1"]))
+                self.set("Load path/Displacement factors", "0.3, 0.7, 1")
             self.set("Load path/Global branch", draw.choice(["search", "prove"]) if (
                 self.quadrature == "nodal") else "search")
         self.set("Output/Displacement", "true")

@@ -2,6 +2,8 @@
 #ifndef debond_elasticity_load_factors_h
 #define debond_elasticity_load_factors_h
 
+#include <tuple>
+
 namespace Debond
 {
   /// Multiples of what is applied (but for dead loads, which are constant) and
@@ -28,6 +30,14 @@ namespace Debond
   operator==(const LoadFactors &a, const LoadFactors &b)
   {
     return a.loads == b.loads && a.displacements == b.displacements;
+  }
+
+  /// An order for maps: by the factor of the loads first.
+  inline bool
+  operator<(const LoadFactors &a, const LoadFactors &b)
+  {
+    return std::tie(a.loads, a.displacements) <
+           std::tie(b.loads, b.displacements);
   }
 } // namespace Debond
 

@@ -35,15 +35,9 @@ namespace Debond
     /// Loads without a factor: names of boundaries with loads, "body force".
     std::set<std::string> dead_loads;
 
-    /// Says whether bonds return to branches that they have left.
+    /// Says whether bonds return to branches that they have left. Otherwise
+    /// there is no global branch, as states depend on those before.
     bool bonds_heal = true;
-
-    /// Says whether states depend on one factor and not on those before.
-    bool
-    has_global_branch() const
-    {
-      return bonds_heal && displacement_factors.empty();
-    }
 
     /// Returns the factors of a step, from 0.
     LoadFactors

@@ -14,7 +14,7 @@
 
 namespace Debond
 {
-  /// A minimum of the condensed problem under a multiple of the loads.
+  /// A minimum of the condensed problem under multiples of its loads.
   struct BranchPoint
   {
     Eigen::VectorXd s;
@@ -22,16 +22,16 @@ namespace Debond
     WhichMinimum    which;
   };
 
-  /// By the factor of the loads.
-  using Branch = std::map<double, BranchPoint>;
+  using Branch = std::map<LoadFactors, BranchPoint>;
 
-  /// Called with the factor and the point, each time that one is done.
-  using BranchMonitor = std::function<void(const double, const BranchPoint &)>;
+  /// Called with the factors and the point, each time that one is done.
+  using BranchMonitor =
+    std::function<void(const LoadFactors, const BranchPoint &)>;
 
   /**
    * The lowest minima that are known at the factors of @p start, which holds a
    * minimum for each: the search of the scene, with starts from the neighbours
-   * with more and with less load, and the proof if it is @p wanted. No
+   * in the order of LoadFactors, and the proof if it is @p wanted. No
    * point is above the one in @p start. Factors that were not reached when
    * @p interruption was requested are left out.
    */
