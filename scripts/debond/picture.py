@@ -266,7 +266,7 @@ def draw_box(axes, points, panel, length):
 
 
 def draw_contact(run):
-    if not run.contact:
+    if not run.contact or run.contact.is_unknown.all():
         return
     height = 6.
     if run.contact.dim == 3:
@@ -297,8 +297,9 @@ def draw_line(run, both):
                 axes.axvline(x[-1], color="k", ls=":", lw=0.8)
         axes.axhline(0, color="k", lw=0.6)
         axes.set_ylabel(label)
-        if numpy.nanmax(abs(values)) < 1e-9 * numpy.nanmax(usual):  # rounding
-            axes.set_ylim(-numpy.nanmax(usual), numpy.nanmax(usual))
+        usual = numpy.nanmax(usual)
+        if numpy.nanmax(abs(values)) < 1e-9 * usual:  # rounding
+            axes.set_ylim(-usual, usual)
     breaks = numpy.where(
         (M > 0) & ((stiffness > 0) | ~(stiffness > 0).any()) &
         (M < 3 * abs(contact.at_nodes("gap")).max()),

@@ -180,6 +180,10 @@ ends = figures(BENCH, "Contact law/Bond stiffness=if(x > 0.2, 69, 0)")["contact"
 (line,) = [line for line in ends.lines if line.get_label() == "bonds break"]
 assert line.get_xdata()[numpy.isfinite(line.get_ydata())].min() > 0.2
 
+# Without contact nodes, and without contact.vtu, only the body is drawn.
+for setting in "Mesh/Cells=1, 1", "Output/Contact VTU=false":
+    assert set(figures(BENCH, setting)) - {"history"} == {"body"}
+
 # Any name of a state has a colour and is in the legend.
 drawn = figures(BENCH)
 assert {"at rest", "bonded (6)"} <= set(legend(drawn["body"])), legend(drawn["body"])
