@@ -137,7 +137,8 @@ namespace Debond
         {"friction|coulomb", "friction"},
         {"plastic|yield|hardening", "plasticity"},
         {"visc|creep|damping", "viscosity"},
-        {"density|\\bmass|veloc|accelerat|time step", "inertia"},
+        {"density|\\bmass|veloc|accelerat|time step",
+         "inertia (weight is Loads/Body force)"},
         {"(large|finite) (displ|strain|rot|def)", "large displacements"},
         {"(tangential|shear) (stiff|streng|energ)|mode (ii|2)",
          "bonds that shear"},
@@ -157,17 +158,34 @@ namespace Debond
       const auto has = [](const std::string &word, const std::string &part) {
         return part.size() > 2 && word.find(part) != std::string::npos;
       };
-      // Many call bonds cohesive.
-      const auto [section, name] =
-        split(boost::ireplace_all_copy(path, "cohesive", "bond"));
+      // Other programs have other words.
+      static const std::map<std::string, std::string> synonyms = {
+        {"\\bg_?i?c\\b|toughness|critical energy", "Fracture energy"},
+        {"\\bcte\\b|/alpha$", "Thermal expansion"},
+        {"/(e|elastic\\w* modulus|stiffness)$", "Young modulus"},
+        {"/nu$", "Poisson ratio"},
+        {"gravity|/weight$", "Body force"},
+        {"symmetry", "Roller boundaries"},
+        {"cohesive", "Bond"}};
+      std::string translated = path;
+      for (const auto &[words, ours] : synonyms)
+        translated = std::regex_replace(translated,
+                                        std::regex(words, std::regex::icase),
+                                        ours);
+      const auto [section, name] = split(translated);
       std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
       std::vector<std::string>                                       siblings;
       for (const std::string &other : known)
         {
-          const auto [its_section, its_name] = split(other);
-          const std::size_t distance         = edit_distance(name, its_name);
-          if (distance <= std::max<std::size_t>(2, name.size() / 3) ||
-              has(its_name, name) || has(name, its_name))
+          // Of a family the words before NAME count.
+          const bool is_family = boost::ends_with(other, " NAME");
+          const auto [its_section, its_name] =
+            split(boost::erase_last_copy(other, " NAME"));
+          const std::string word =
+            is_family ? name.substr(0, name.rfind(' ')) : name;
+          const std::size_t distance = edit_distance(word, its_name);
+          if (distance <= std::max<std::size_t>(2, word.size() / 3) ||
+              (!is_family && (has(its_name, name) || has(name, its_name))))
             near.emplace_back(distance,
                               edit_distance(section, its_section),
                               other);
@@ -278,6 +296,9 @@ namespace Debond
         std::vector<std::string> known;
         for (const auto &[other, unused] : entries)
           known.push_back(other);
+        for (const auto &[other, unused] : families)
+          if (other.back() != '/')
+            known.push_back(other + " NAME");
         errors.push_back(location + ": unknown parameter " + shortened(path) +
                          suggestion(shortened(path), known));
         return;
@@ -337,7 +358,7 @@ namespace Debond
       catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
         {
           reason =
-            "expected " + entry.pattern.description() + comma_hint(value);
+            "expected " + entry.pattern.description() + number_hint(value);
         }
       catch (const std::invalid_argument &error)
         {
@@ -352,9 +373,11 @@ namespace Debond
   void
   ParameterTable::read(std::istream &input, const std::string &file)
   {
-    file_name     = file;
-    ReadFile &own = read_files[std::filesystem::weakly_canonical(file)];
-    own.is_open   = true;
+    file_name = file;
+    std::error_code no_file; // as behind /dev/stdin
+    ReadFile       &own =
+      read_files[std::filesystem::weakly_canonical(file, no_file)];
+    own.is_open                             = true;
     const std::vector<std::string> sections = known_sections();
     const auto                     is_known = [&](const std::string &section) {
       return section.empty() ||
@@ -372,8 +395,12 @@ namespace Debond
         // Some editors begin a file with the mark of UTF-8.
         if (n_lines++ == 0 && starts_with(line, "\xef\xbb\xbf"))
           line.erase(0, 3);
-        line                 = trim(line);
-        const bool continued = boost::ends_with(line, "\\");
+        line = trim(line);
+        const bool continued =
+          boost::ends_with(line, "\\") && line.find('#') == std::string::npos;
+        if (starts_with(line, "#include "))
+          notes.push_back(words(
+            file, ':', n_lines, ": this is a comment; include FILE has no #"));
         text += line.substr(0, line.size() - (continued ? 1 : 0));
         if (continued)
           continue;
@@ -416,7 +443,14 @@ namespace Debond
               set(path, trim(rest.substr(equals + 1)), at);
           }
         else if (keyword == "include" && !rest.empty() && section.empty())
-          read_included(rest, file, at);
+          {
+            const auto &included = read_included(rest, file, at);
+            for (const auto &[path, earlier] : set_here)
+              if (included.count(path) > 0)
+                errors.push_back(at + ": include " + rest + " sets " + path +
+                                 " again, after " + earlier +
+                                 ": put include first");
+          }
         else if (!text.empty() && ++n_unread > most_unread)
           {
             errors.push_back(at + ": nor can what follows; is this a scene?");
@@ -441,7 +475,7 @@ namespace Debond
 
 
 
-  void
+  const ParameterTable::FileValues &
   ParameterTable::read_included(const std::string &name,
                                 const std::string &file,
                                 const std::string &location)
@@ -450,11 +484,10 @@ namespace Debond
       std::filesystem::path(file).parent_path() / name;
     std::ifstream     input = open_plain_file(path);
     const std::string error = location + ": include " + name + ": ";
+    const auto        key   = std::filesystem::weakly_canonical(path);
     if (!input)
       errors.push_back(error + "there is no such file, or it cannot be read");
-    else if (const auto known =
-               read_files.find(std::filesystem::weakly_canonical(path));
-             known == read_files.end())
+    else if (const auto known = read_files.find(key); known == read_files.end())
       read(input, path.string());
     else if (known->second.is_open)
       errors.push_back(error + "the file includes itself");
@@ -468,6 +501,7 @@ namespace Debond
         errors.resize(n_errors);
       }
     file_name = file;
+    return read_files[key].values;
   }
 
 

@@ -140,16 +140,21 @@ namespace Debond
           least_threshold  = std::min(least_threshold, node.bond_threshold);
           are_all_broken &= gap >= node.bond_threshold;
         }
-    if (!std::isfinite(least_threshold))
+    if (nodes.empty())
       return {};
+    if (!std::isfinite(least_threshold))
+      return {"no node of the contact boundary has bonds"};
     if (are_all_broken)
       return {"all bonds are broken at rest: the initial gap is beyond their "
               "threshold"};
-    const double size = dealii::GridTools::diameter(body);
+    const auto box  = dealii::GridTools::compute_bounding_box(body);
+    double     size = box.side_length(0);
+    for (unsigned int d = 1; d < dim; ++d)
+      size = std::min(size, box.side_length(d));
     if (least_threshold > size)
-      return {words("no bond can break: the least threshold is ",
+      return {words("bonds break beyond an opening of ",
                     least_threshold,
-                    ", the body's size ",
+                    ", more than the body's thickness, ",
                     size,
                     "; are they in the same unit?")};
     return {};

@@ -367,6 +367,11 @@ namespace Debond
       if (Tolerance::force_rounding * result.largest() <
           result.rounding_of_gaps)
         result.rounding.add(result.rounding_of_gaps);
+      // Nor has one whose upper part has come off, and moves without stress,
+      // at the other one.
+      if (const double largest = result.rounding.linfty_norm();
+          result.largest() < largest)
+        result.rounding.add(largest);
       result.resolved_beside_loads =
         std::max(Tolerance::negligible_force *
                    (fields.is_heated() ? result.load : 0.),

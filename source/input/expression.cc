@@ -20,13 +20,15 @@ namespace Debond
   namespace
   {
     /// Throws std::invalid_argument for what muParser takes in another sense
-    /// than its author: for it the value of "a, b" is b, "=" assigns to a
-    /// coordinate, and rand() has another value each time.
+    /// than its author: for it the value of "a, b" is b, "a < b < c" compares
+    /// c with 0 or 1, "=" assigns to a coordinate, and rand() has another value
+    /// each time.
     void
     check_sense(const std::string &text)
     {
-      std::vector<bool> has_arguments; // of each bracket that is open
-      std::string       name;          // that ends here
+      std::vector<bool>         has_arguments; // of each bracket that is open
+      std::vector<unsigned int> n_comparisons = {0}; // in each
+      std::string               name;                // that ends here
       for (std::size_t i = 0; i <= text.size(); ++i)
         {
           const char c = text.c_str()[i];
@@ -37,15 +39,32 @@ namespace Debond
             }
           if (name == "rand" || name == "rand_seed")
             throw std::invalid_argument(name + " has no fixed value");
+          if (c == '<' || c == '>' ||
+              (c == '=' && i > 0 && (text[i - 1] == '=' || text[i - 1] == '!')))
+            ++n_comparisons.back();
+          else if (c != '\0' &&
+                   std::string(",&|?:").find(c) != std::string::npos)
+            n_comparisons.back() = 0;
+          if (n_comparisons.back() > 1)
+            throw std::invalid_argument("behind '" + text.substr(0, i) +
+                                        "' the second comparison is one with 0 "
+                                        "or 1: write a < x && x < b");
           if (c == '(')
-            has_arguments.push_back(!name.empty());
+            {
+              has_arguments.push_back(!name.empty());
+              n_comparisons.push_back(0);
+            }
           else if (c == ')' && !has_arguments.empty())
-            has_arguments.pop_back();
+            {
+              has_arguments.pop_back();
+              n_comparisons.pop_back();
+            }
           else if (c == ',' && (has_arguments.empty() || !has_arguments.back()))
             throw std::invalid_argument("the comma behind '" +
                                         text.substr(0, i) +
                                         "' separates no arguments of a "
-                                        "function; " +
+                                        "function; components are separated by "
+                                        "';'; " +
                                         decimal_comma);
           else if (c == '=' && text.c_str()[i + 1] != '=' &&
                    (i == 0 ||
@@ -119,7 +138,7 @@ namespace Debond
           "in '" + expressions + "': " +
           dealii::Utilities::trim(text.str().substr(
             at == std::string::npos ? 0 : at + start.size())) +
-          comma_hint(expressions));
+          number_hint(expressions));
       }
   }
 

@@ -9,8 +9,8 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -18,18 +18,6 @@ namespace Debond
 {
   namespace
   {
-    bool
-    is_constant_name(const std::string &name)
-    {
-      return !name.empty() && name != "x" && name != "y" && name != "z" &&
-             std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
-             std::all_of(name.begin(), name.end(), [](const unsigned char c) {
-               return std::isalnum(c) != 0 || c == '_';
-             });
-    }
-
-
-
     template <int dim>
     void
     add_material_constants(const Material &material, Constants &constants)
@@ -47,20 +35,7 @@ namespace Debond
     const std::string constants_section = "Constants/";
     const std::string constants_list    = "Loads/Constants";
 
-    /// Reads "a = 1, b = 2". Throws std::invalid_argument.
-    std::map<std::string, std::string>
-    parse_constants(const std::string &list)
-    {
-      std::map<std::string, std::string> texts;
-      for (const std::string &item :
-           dealii::Utilities::split_string_list(list, ','))
-        {
-          const auto parts = dealii::Utilities::split_string_list(item, '=');
-          if (parts.size() != 2 || !texts.emplace(parts[0], parts[1]).second)
-            throw std::invalid_argument(item);
-        }
-      return texts;
-    }
+    const std::string name_of_constant = "(?![xyz]\\b)[A-Za-z_]\\w*";
 
 
 
@@ -152,21 +127,15 @@ namespace Debond
       Pattern("a number, or an expression of other constants"),
       "A constant of this name, which numbers and expressions of all entries may use, such as 'Lengths = 2*a, a'; the DefineConstant of a .geo file takes it too. pi is known, and in expressions of the place, unless they are given here, the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
       "those that the entries need");
+    const std::regex list("(\\s*" + name_of_constant +
+                          "\\s*=[^=,]+(,(?!$)|$))*");
     table.declare(
       constants_list,
       "",
-      Pattern("a list NAME=NUMBER, NAME=NUMBER, ... of names other "
-              "than x, y and z",
-              [](const std::string &text) {
-                try
-                  {
-                    parse_constants(text);
-                    return true;
-                  }
-                catch (const std::invalid_argument &)
-                  {
-                    return false;
-                  }
+      Pattern("a list NAME=NUMBER, NAME=NUMBER, ... of names other than x, y "
+              "and z",
+              [list](const std::string &text) {
+                return std::regex_match(text, list);
               }),
       "Constants in one line, such as 'q=0.69, L=0.4'; those of the section Constants come before them",
       "those that the entries need",
@@ -178,17 +147,15 @@ namespace Debond
   Constants
   constants_of(const ParameterTable &table)
   {
+    using dealii::Utilities::split_string_list;
     std::map<std::string, std::string> texts, entries;
-    try
-      {
-        texts = parse_constants(table.get(constants_list));
-      }
-    catch (const std::invalid_argument &)
-      {
-        // It is said when the entry is taken.
-      }
-    for (const auto &[name, unused] : texts)
-      entries[name] = constants_list;
+    for (const std::string &item :
+         split_string_list(table.get(constants_list), ','))
+      if (const auto parts = split_string_list(item, '='); parts.size() == 2)
+        {
+          entries[parts[0]] = constants_list;
+          texts[parts[0]]   = parts[1];
+        }
     const auto locations = table.locations();
     for (const auto &[path, unused] : locations)
       if (boost::starts_with(path, constants_section))
@@ -197,25 +164,29 @@ namespace Debond
           entries[name]          = path;
           texts[name]            = table.get(path);
         }
-    for (const auto &[name, entry] : entries)
-      if (!is_constant_name(name))
-        throw BadInput(
-          {locations.at(entry) + ": " + entry +
-           ": the name of a constant has letters, digits and _, begins with no digit, and is not x, y or z"});
+    const auto error_of = [&](const std::string &name,
+                              const std::string &reason) {
+      const std::string &entry = entries.at(name);
+      return BadInput({words(locations.at(entry),
+                             ": ",
+                             entry,
+                             " = ",
+                             table.get(entry),
+                             ": ",
+                             reason)});
+    };
+    for (const auto &[name, unused] : entries)
+      if (!std::regex_match(name, std::regex(name_of_constant)))
+        throw error_of(
+          name,
+          "the name of a constant has letters, digits and _, begins with no digit, and is not x, y or z");
     try
       {
         return evaluate_constants(texts);
       }
     catch (const EntryError &error)
       {
-        const std::string &entry = entries.at(error.entry);
-        throw BadInput({words(locations.at(entry),
-                              ": ",
-                              entry,
-                              " = ",
-                              table.get(entry),
-                              ": ",
-                              error.what())});
+        throw error_of(error.entry, error.what());
       }
   }
 
@@ -251,14 +222,23 @@ namespace Debond
   {
     const std::set<std::string>    boundaries = body.boundaries();
     const std::vector<std::string> known(boundaries.begin(), boundaries.end());
+    // How to name boundaries is said once.
+    const bool is_said =
+      std::any_of(table.errors.begin(),
+                  table.errors.end(),
+                  [](const std::string &error) {
+                    return error.find("Physical Curve") != std::string::npos;
+                  });
     for (const std::string &name : names)
       if (boundaries.count(name) == 0)
         table.reject(
           path,
           "the body has no boundary " + name +
-            (known.empty() ?
-               "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6" :
-               ", but " + join(known, ", ")) +
+            (!known.empty() ?
+               ", but " + join(known, ", ") :
+             is_said ?
+               "" :
+               "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6") +
             (body.inner_groups.count(name) > 0 ?
                "; the group of this name lies inside the body or away from it" :
              body.regions().count(name) > 0 ?

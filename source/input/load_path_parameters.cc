@@ -191,16 +191,20 @@ namespace Debond
     if (load_path.arc && factors.empty())
       table.reject("Load path/Arc", "the scene has no load path");
     std::set<std::string> loaded;
+    if (!loads.body_force.empty())
+      loaded.insert("body force");
     for (const SurfaceLoad &load : loads.on_boundaries())
       loaded.insert(load.boundary);
     const std::string dead_loads = "Load path/Dead loads";
     join_names(table.get(dead_loads), loaded, load_path.dead_loads);
     for (const std::string &name : load_path.dead_loads)
-      if (name == "body force" ? loads.body_force.empty() :
-                                 loaded.count(name) == 0)
+      if (loaded.count(name) == 0)
         table.reject(dead_loads,
-                     "the scene has no " +
-                       (name == "body force" ? name : "traction " + name));
+                     "the scene has no load " + name +
+                       (loaded.empty() ?
+                          "" :
+                          ", but " +
+                            join({loaded.begin(), loaded.end()}, ", ")));
   }
 
 

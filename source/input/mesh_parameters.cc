@@ -60,7 +60,7 @@ namespace Debond
             path,
             "expected " + std::to_string(dimension) +
               " values for Dimension = " + std::to_string(dimension) +
-              (path == "Mesh/Cells" ? "" : comma_hint(table.get(path))),
+              (path == "Mesh/Cells" ? "" : number_hint(table.get(path))),
             {"Dimension"});
     }
   } // namespace
@@ -117,7 +117,7 @@ namespace Debond
       "length per the file's");
     table.bind(
       "Mesh/Size",
-      body.size,
+      body.meshing.size,
       quantity(true),
       "How long the edges of cells are if the File is a geometry. 0 leaves it to the file, or to Gmsh. What makes more cells than there is memory for is refused",
       "length");
@@ -150,6 +150,9 @@ namespace Debond
                    const std::string &expression,
                    const Constants   &constants)
     {
+      if (expression.find_first_of("<>=") == std::string::npos)
+        throw std::invalid_argument("'" + dealii::Utilities::trim(expression) +
+                                    "' compares nothing, as x > 0.1 does");
       return [entry, function = make_function<dim>(expression, constants, 1)](
                const dealii::Point<dim> &point) {
         try

@@ -64,6 +64,10 @@ namespace Debond
          at != std::string::npos;
          at = output.directory.find(placeholder, at + name.size()))
       output.directory.replace(at, placeholder.size(), name);
+    if (output.directory.find_first_of("~$\"{") != std::string::npos)
+      table.reject(
+        "Output/Directory",
+        "has no ~, $VARIABLE or quotes, and {scene} as the only name");
     table.derive("Output/Directory", output.directory, "Output/Directory");
   }
 } // namespace Debond

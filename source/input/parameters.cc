@@ -12,6 +12,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -26,6 +29,17 @@ namespace Debond
 
   namespace
   {
+    /// Returns how often the text has this word.
+    std::size_t
+    n_words(const std::string &word, const std::string &text)
+    {
+      const std::regex pattern("\\b" + word + "\\b");
+      return std::distance(
+        std::sregex_iterator(text.begin(), text.end(), pattern), {});
+    }
+
+
+
     void
     bind_boundaries(Parameters &p, ParameterTable &table)
     {
@@ -99,7 +113,18 @@ namespace Debond
   void
   SceneTable::evaluate()
   {
-    p.loads.constants = body.constants = constants_of(*this);
+    p.loads.constants = body.meshing.constants = constants_of(*this);
+    // A misspelt constant has no effect, however a study varies it.
+    for (const auto &[name, unused] : p.loads.constants)
+      {
+        const bool  in_section = is_set("Constants/" + name);
+        std::size_t n_uses     = 0;
+        for (const auto &[path, place] : locations())
+          if (is_set(path))
+            n_uses += n_words(name, get(path));
+        if (n_uses == (in_section ? 0 : 1))
+          idle_constants.insert(name);
+      }
     take_values([this](const std::string &text) {
       return with_values(text, p.loads.constants);
     });
@@ -121,6 +146,8 @@ namespace Debond
     if (!input || std::filesystem::is_directory(scene) ||
         std::filesystem::is_character_file(scene))
       throw BadInput({scene + ": cannot be read as a scene file"});
+    if (input.peek() >= 0xfe)
+      throw BadInput({scene + ": this is UTF-16; save it as UTF-8"});
     const std::string ending = std::filesystem::path(scene).extension();
     if (input.peek() == '{' || ending == ".json")
       throw BadInput({scene + ": this is JSON; a scene is a .prm file, as "
@@ -256,9 +283,10 @@ namespace Debond
 
     /// Notes entries that the run does not look at.
     void
-    note_entries_without_effect(const Parameters     &p,
-                                const BodyParameters &body,
-                                ParameterTable       &table)
+    note_entries_without_effect(const Parameters            &p,
+                                const BodyParameters        &body,
+                                const std::set<std::string> &idle_constants,
+                                ParameterTable              &table)
     {
       const BondSearchChoice search = p.solver.search;
       const std::string      method = "Solver/Method is " + p.solver.method;
@@ -267,11 +295,31 @@ namespace Debond
       const bool has_path           = !p.load_path.factors.empty();
       const bool has_branches       = has_path && p.load_path.bonds_heal &&
                                 p.load_path.global_branch != GlobalBranch::none;
-      const bool searches = has_path ? has_branches :
-                            search == BondSearchChoice::automatic ?
-                                       p.solver.method == "automatic" :
-                                       search != BondSearchChoice::none;
-      const bool is_cold  = !p.materials.expands();
+      const bool    searches = has_path ? has_branches :
+                               search == BondSearchChoice::automatic ?
+                                          p.solver.method == "automatic" :
+                                          search != BondSearchChoice::none;
+      const bool    is_cold  = !p.materials.expands();
+      std::ifstream file(
+        boost::ends_with(body.file, ".geo") ? table.get("Mesh/File") : "");
+      const std::string geometry(std::istreambuf_iterator<char>(file), {});
+      for (const std::string &name : idle_constants)
+        if (n_words(name, geometry) == 0)
+          table.notes.push_back("no effect of the constant " + name +
+                                ": nothing uses it");
+      const auto is_given = [&table](const std::string &beginning) {
+        for (const auto &[path, unused] : table.locations())
+          if (boost::starts_with(path, beginning) && table.is_set(path))
+            return true;
+        return false;
+      };
+      if (table.is_set("Material/Young modulus") &&
+          !p.contact_boundaries.empty() && p.law.name == "winkler" &&
+          !is_given("Contact law/Bond") &&
+          !is_given("Contact law/Fracture energy"))
+        table.notes.push_back(
+          "the bonds are the default ones, 69 GPa/m up to 0.002 m: is the Young "
+          "modulus in GPa?");
       for (const auto &[is_idle, reason, entries] :
            std::vector<std::tuple<bool, std::string, std::string>>{
              {body.source != BodyParameters::Source::box,
@@ -430,7 +478,7 @@ namespace Debond
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
-    body.memory = memory_left(p.solver.memory_limit);
+    body.meshing.memory = memory_left(p.solver.memory_limit);
     p.body =
       make_body(scene, p.dimension, body, parts, p.loads.constants, *this);
     p.law = laws.make_law(*this);
@@ -458,7 +506,7 @@ namespace Debond
     check_softening(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
-    note_entries_without_effect(p, body, *this);
+    note_entries_without_effect(p, body, idle_constants, *this);
     if (!errors.empty())
       throw BadInput(errors);
 

@@ -37,7 +37,7 @@ namespace Debond
         throw std::invalid_argument(
           "it is neither a point (" + std::to_string(dim) +
           " numbers, separated by commas) nor 'mean NAME' nor 'force NAME'" +
-          comma_hint(text));
+          number_hint(text));
       return probe;
     }
 

@@ -135,9 +135,10 @@ namespace Debond
     /// Throws std::invalid_argument if edges of this length make more cells
     /// than there is memory for. A coarse mesh says how large the geometry is.
     void
-    check_size(const int dim, const double size, const double memory)
+    check_size(const int dim, const MeshingOptions &options)
     {
-      double x, y, z, end_x, end_y, end_z;
+      const double size = options.size;
+      double       x, y, z, end_x, end_y, end_z;
       gmsh::model::getBoundingBox(-1, -1, x, y, z, end_x, end_y, end_z);
       const double length = end_x - x + end_y - y + end_z - z;
       if (size > length / 300.)
@@ -155,11 +156,11 @@ namespace Debond
       double needed = 0.;
       for (const double determinant : determinants)
         needed += bytes * std::abs(determinant) / (dim == 2 ? 2. : 6.);
-      if (needed > memory)
+      if (needed > options.memory)
         throw std::invalid_argument(words("cells of Mesh/Size take about ",
                                           in_gib(needed),
                                           ", and there are ",
-                                          in_gib(memory),
+                                          in_gib(options.memory),
                                           ": make it larger"));
     }
 
@@ -230,15 +231,13 @@ namespace Debond
     /// Has Gmsh read a file, or mesh its geometry. Throws
     /// std::invalid_argument, or what Gmsh throws.
     GmshFile
-    read_by_gmsh(const std::string                   &file_name,
-                 const bool                           is_old,
-                 const int                            dim,
-                 const double                         size,
-                 const double                         memory,
-                 const std::map<std::string, double> &constants)
+    read_by_gmsh(const std::string    &file_name,
+                 const bool            is_old,
+                 const int             dim,
+                 const MeshingOptions &options)
     {
       std::vector<std::string> arguments = {"debond"};
-      for (const auto &[name, value] : constants)
+      for (const auto &[name, value] : options.constants)
         append<std::string>({"-setnumber", name, shortest_text(value)},
                             arguments);
       std::vector<char *> words;
@@ -272,14 +271,14 @@ namespace Debond
         file.nodes.empty() ||
         (kinds.empty() && boost::iends_with(file_name, ".geo") &&
          gmsh::model::getDimension() == dim);
-      if (!file.is_geometry && size > 0.)
+      if (!file.is_geometry && options.size > 0.)
         throw std::invalid_argument(
           "the file has a mesh, where Size is for geometries");
-      if (file.is_geometry && size > 0.)
+      if (file.is_geometry && options.size > 0.)
         {
           if (file.nodes.empty())
-            check_size(dim, size, memory);
-          set_size(size);
+            check_size(dim, options);
+          set_size(options.size);
         }
       if (file.is_geometry)
         gmsh::model::mesh::generate(dim);
@@ -296,19 +295,17 @@ namespace Debond
 
     /// Writes an error, or an empty one and what Gmsh has read, to a pipe.
     void
-    send_what_gmsh_reads(std::FILE *const                     pipe,
-                         const std::string                   &file_name,
-                         const bool                           is_old,
-                         const int                            dim,
-                         const double                         size,
-                         const double                         memory,
-                         const std::map<std::string, double> &constants)
+    send_what_gmsh_reads(std::FILE *const      pipe,
+                         const std::string    &file_name,
+                         const bool            is_old,
+                         const int             dim,
+                         const MeshingOptions &options)
     {
       GmshFile    file;
       std::string error;
       try
         {
-          file = read_by_gmsh(file_name, is_old, dim, size, memory, constants);
+          file = read_by_gmsh(file_name, is_old, dim, options);
         }
       catch (const std::invalid_argument &exception)
         {
@@ -318,9 +315,9 @@ namespace Debond
         {
           const std::string said = errors_of_gmsh();
           error                  = "Gmsh does not read this" +
-                  (said.empty() ?
-                     ", or a memory of " + in_gib(memory) + " is not enough" :
-                     ": " + said);
+                  (said.empty() ? ", or a memory of " + in_gib(options.memory) +
+                                    " is not enough" :
+                                  ": " + said);
           if (!boost::iends_with(file_name, ".geo") &&
               !boost::iends_with(file_name, ".msh"))
             error +=
@@ -338,14 +335,12 @@ namespace Debond
 
 
   GmshFile
-  read_gmsh_file(const std::string                   &file_name,
-                 const int                            dim,
-                 const double                         size,
-                 const double                         memory,
-                 const std::map<std::string, double> &constants)
+  read_gmsh_file(const std::string    &file_name,
+                 const int             dim,
+                 const MeshingOptions &options)
   {
     const bool is_old = is_old_msh(file_name);
-    check_constants(file_name, constants);
+    check_constants(file_name, options.constants);
     // Gmsh crashes on some broken files, and it changes the locale, the
     // environment and the number of threads: it gets a process of its own.
     int         ends[2];
@@ -362,7 +357,7 @@ namespace Debond
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent)
           _exit(1);
-        limit_memory(memory);
+        limit_memory(options.memory);
         // Exit in a .geo file calls exit(), where handlers of the parent would
         // wait for its threads for ever.
         std::atexit([]() { _exit(0); });
@@ -370,13 +365,8 @@ namespace Debond
         const int nowhere = open("/dev/null", O_WRONLY);
         dup2(nowhere, STDOUT_FILENO);
         dup2(nowhere, STDERR_FILENO);
-        send_what_gmsh_reads(fdopen(ends[1], "wb"),
-                             file_name,
-                             is_old,
-                             dim,
-                             size,
-                             memory,
-                             constants);
+        send_what_gmsh_reads(
+          fdopen(ends[1], "wb"), file_name, is_old, dim, options);
         _exit(0);
       }
     close(ends[1]);
@@ -392,7 +382,7 @@ namespace Debond
     if (status != 0)
       throw std::invalid_argument(
         file_name + ": Gmsh crashes on this file, or a memory of " +
-        in_gib(memory) + " is not enough for its mesh");
+        in_gib(options.memory) + " is not enough for its mesh");
     if (bytes.empty())
       throw std::invalid_argument(
         file_name + ": it ends Gmsh before there is a mesh; leave out Exit");

@@ -504,7 +504,8 @@ namespace Debond
       /// Nodes at the place of another one: cracks, or forgotten.
       static constexpr const char *on_one_place =
         " at the same place as others, which "
-        "are not connected with them; Coherence Mesh in Gmsh joins them";
+        "are not connected with them; Coherence Mesh in Gmsh joins them. Bodies "
+        "that are glued to each other are one mesh with Mesh/Cuts";
 
       const std::string               file_name;
       bool                            is_of_higher_order = false;
@@ -531,15 +532,15 @@ namespace Debond
 
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string                   &file_name,
-                 const double                         scale,
-                 const double                         size,
-                 const double                         memory,
-                 const std::map<std::string, double> &constants)
+  read_gmsh_mesh(const std::string &file_name,
+                 const double       scale,
+                 MeshingOptions     options)
   {
-    const GmshFile file =
-      read_gmsh_file(file_name, dim, size / scale, memory, constants);
-    return GmshMesh<dim>(file_name, scale, file).make();
+    options.size /= scale;
+    return GmshMesh<dim>(file_name,
+                         scale,
+                         read_gmsh_file(file_name, dim, options))
+      .make();
   }
 
 

@@ -19,9 +19,7 @@ namespace Debond
     if (parameters.source == Source::file)
       file = read_gmsh_mesh<dim>(parameters.file,
                                  parameters.scale,
-                                 parameters.size,
-                                 parameters.memory,
-                                 parameters.constants);
+                                 parameters.meshing);
     const auto make = [file, parameters](const unsigned int n_refinements) {
       auto source = std::make_unique<SourceMesh<dim>>();
       if (file)

@@ -15,6 +15,11 @@ namespace Debond
 {
   namespace
   {
+    /// Beyond it an estimate tells little but that the mesh is too coarse.
+    constexpr double largest_mesh_error = 0.2;
+
+
+
     template <int dim>
     std::optional<DisplacementError>
     error_of(const std::string &exact_displacement,
@@ -165,6 +170,9 @@ namespace Debond
                                            result.levels.empty() ?
                                              std::nullopt :
                                              result.levels.back().error_factor);
+          if (result.estimate->relative() > largest_mesh_error)
+            result.notes.push_back(
+              "the mesh is too coarse for J: see error of the mesh");
           if ((!result.levels.empty() ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))
@@ -270,10 +278,11 @@ namespace Debond
       result.notes.push_back(
         "all loads act where the body cannot move: on supports, or along a "
         "contact boundary with Contact law/Tangential displacement = fixed");
-    append(
-      bond_notes(scene.problem().unknowns().dof_handler().get_triangulation(),
-                 result.verification.nodes),
-      result.notes);
+    if (!scene.parameters().law.pieces.empty())
+      append(
+        bond_notes(scene.problem().unknowns().dof_handler().get_triangulation(),
+                   result.verification.nodes),
+        result.notes);
     append(plausibility_notes(result.largest,
                               faces_in_softening_zone(scene.problem(),
                                                       scene.adhesion())),

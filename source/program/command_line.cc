@@ -181,7 +181,9 @@ namespace Debond
 
       // Two names may mean one directory.
       const auto [other, is_new] = directories.emplace(
-        std::filesystem::weakly_canonical(parameters.output.directory), scene);
+        std::filesystem::weakly_canonical(
+          std::filesystem::absolute(parameters.output.directory)),
+        scene);
       if (!is_new && !options.validate)
         throw BadInput({scene + ": the output directory " +
                         parameters.output.directory + " is that of " +

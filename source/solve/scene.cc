@@ -205,16 +205,21 @@ namespace Debond
         "decide nothing: all its vertices are held by supports, or as corners "
         "by fixed tangential displacements. A finer mesh has others, and "
         "Contact law/Tangential displacement = free does not hold corners");
-    // A load on a boundary that is clamped is often meant for another one.
-    const std::set<dealii::types::boundary_id> &clamped =
-      boundary_conditions.clamped;
+    // A load where the displacement is given is often meant for another place.
+    std::set<dealii::types::boundary_id> held = boundary_conditions.clamped;
+    for (const auto &[name, text] : given.supports.displacements)
+      if (text.find("free") == std::string::npos)
+        {
+          const auto &ids = boundary_conditions.names.at(name);
+          held.insert(ids.begin(), ids.end());
+        }
     for (const SurfaceLoad &load : given.loads.on_boundaries())
       if (const std::set<dealii::types::boundary_id> &ids =
             boundary_conditions.names.at(load.boundary);
           load.expression.find_first_not_of("0;. ") != std::string::npos &&
-          std::includes(clamped.begin(), clamped.end(), ids.begin(), ids.end()))
+          std::includes(held.begin(), held.end(), ids.begin(), ids.end()))
         body_notes.push_back("no effect of " + load.entry() +
-                             ": the boundary is clamped");
+                             ": the displacement is given there");
     body_notes.insert(body_notes.end(),
                       elastic_problem->load_notes().begin(),
                       elastic_problem->load_notes().end());

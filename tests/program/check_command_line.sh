@@ -70,10 +70,10 @@ for line in 'set Dimension += 3' 'set Young modulus += 7' \
   'set Poisson ratio += 0\.2'; do
   grep -qE "^ *$line( |$)" included.prm || fail "include: no $line"
 done
-# Files that include another twice are not read 2^n times; the last reading holds.
+# Files that include another twice are not read 2^n times.
 cp parts/middle.prm twice0.prm
 for k in $(seq 28); do
-  printf 'include twice%d.prm\nset Dimension = 2\ninclude twice%d.prm\n' \
+  printf 'include twice%d.prm\ninclude twice%d.prm\n' \
     $((k - 1)) $((k - 1)) >twice$k.prm
 done
 sed -i 's,base.prm,parts/base.prm,' twice0.prm
@@ -89,6 +89,26 @@ echo 'set Colour = red' >>parts/base.prm
 expect_code 2 "$debond" including.prm
 grep -qE '^debond: parts/base.prm:6: unknown parameter Colour' errors ||
   fail "an error in an included file: $(cat errors)"
+
+# An include behind what it sets again would undo that; a comment that ends in a
+# backslash does not swallow the next line.
+printf 'set Dimension = 3\n' >base.prm
+printf 'set Dimension = 2\ninclude base.prm\n' >undone.prm
+expect_code 2 "$debond" undone.prm
+grep -qx "debond: undone.prm:2: include base.prm sets Dimension again, after undone.prm:1: put include first" errors ||
+  fail "include behind: $(cat errors)"
+printf '# in C:\\parts\\\nset Dimension = 3\n' >comment.prm
+expect_code 0 "$debond" comment.prm --print-parameters
+grep -q '^set Dimension *= 3' log || fail "a backslash in a comment"
+expect_code 0 "$debond" /dev/stdin --print-parameters <base.prm
+grep -q '^set Dimension *= 3' log || fail "a scene from a pipe"
+mkdir -p one two
+cp base.prm one
+cp base.prm two
+expect_code 2 "$debond" one/base.prm two/base.prm --set "Dimension=2" --set "Mesh/Cells=4, 1"
+grep -q "two/base.prm: the output directory output/base is that of one/base.prm" errors ||
+  fail "one directory of two scenes: $(cat errors)"
+rm -r one two output base.prm undone.prm comment.prm
 
 # Every parameter says its units.
 entries=$(grep -cE '^ *set |^# .* NAME$|^# [A-Za-z]+/NAME$' defaults.prm)

@@ -280,7 +280,11 @@ namespace Debond
     std::string
     take(const std::string &path, const std::string &value);
 
-    void
+    /// Values that a file and those that it includes set, with their
+    /// locations, by path.
+    using FileValues = std::map<std::string, std::array<std::string, 2>>;
+
+    const FileValues &
     read_included(const std::string &name,
                   const std::string &file,
                   const std::string &location);
@@ -291,12 +295,10 @@ namespace Debond
     std::vector<std::string>      set_paths; ///< in the order of reading
     std::string                   file_name;
 
-    /// The values that a file and those that it includes set, with their
-    /// locations, by path.
     struct ReadFile
     {
-      std::map<std::string, std::array<std::string, 2>> values;
-      bool                                              is_open = true;
+      FileValues values;
+      bool       is_open = true;
     };
     std::map<std::string, ReadFile> read_files; ///< by canonical name
   };

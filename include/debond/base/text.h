@@ -21,10 +21,10 @@ namespace Debond
   inline const std::string decimal_comma =
     "decimal comma? Numbers have a point, and nothing between thousands";
 
-  /// Returns that question behind "; " if the text has a comma between two
-  /// digits, or nothing.
+  /// Returns behind "; " why the text is no number, if it has a comma between
+  /// two digits or a character that is no ASCII; otherwise nothing.
   std::string
-  comma_hint(const std::string &text);
+  number_hint(const std::string &text);
 
 
 

@@ -50,8 +50,8 @@ namespace Debond
   plausibility_notes(const LargestValues &largest,
                      const double         faces_in_softening_zone);
 
-  /// Returns notes on bonds that cannot be meant: all are broken at rest, or
-  /// none can break before the body has moved by its size.
+  /// Returns notes on bonds that are hardly meant: there are none, all are
+  /// broken at rest, or none breaks before the body has moved by its size.
   template <int dim>
   std::vector<std::string>
   bond_notes(const dealii::Triangulation<dim>    &body,

@@ -3,6 +3,7 @@
 #define debond_input_mesh_parameters_h
 
 #include <debond/base/parameter_table.h>
+#include <debond/input/expression.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>

@@ -66,6 +66,7 @@ namespace Debond
     Parameters                         p;
     BodyParameters                     body;
     std::map<std::string, std::string> constants, parts; ///< texts by name
+    std::set<std::string>              idle_constants;   ///< that no entry uses
     LawSection                         laws;
   };
 

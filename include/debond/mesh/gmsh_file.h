@@ -27,21 +27,26 @@ namespace Debond
     std::vector<Elements>    elements;
   };
 
+  /// What Gmsh is told besides the file.
+  struct MeshingOptions
+  {
+    double size   = 0.;   ///< of cells of a geometry; 0: what Gmsh finds good
+    double memory = 1e12; ///< bytes that Gmsh may take
+
+    /// Numbers by name, which DefineConstant of a .geo file takes.
+    std::map<std::string, double> constants;
+  };
+
   /**
    * Has Gmsh read a file in any of its formats, with elements of the dimension
-   * @p dim and of one less. A geometry is meshed, with edges of the length
-   * @p size, or of what the file or Gmsh finds good if it is 0. Gmsh may take
-   * so many bytes of @p memory. DefineConstant of a .geo file takes the values
-   * of the @p constants. Partitions are joined. Throws
-   * std::invalid_argument with Gmsh's words, or if there is more in the file
-   * than Gmsh understands.
+   * @p dim and of one less, and mesh it if it is a geometry. Partitions are
+   * joined. Throws std::invalid_argument with Gmsh's words, or if there is more
+   * in the file than Gmsh understands.
    */
   GmshFile
-  read_gmsh_file(const std::string                   &file_name,
-                 int                                  dim,
-                 double                               size,
-                 double                               memory,
-                 const std::map<std::string, double> &constants);
+  read_gmsh_file(const std::string    &file_name,
+                 int                   dim,
+                 const MeshingOptions &options);
 } // namespace Debond
 
 #endif

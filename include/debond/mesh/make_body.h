@@ -3,10 +3,9 @@
 #define debond_mesh_make_body_h
 
 #include <debond/mesh/box.h>
+#include <debond/mesh/gmsh_file.h>
 
-#include <map>
 #include <memory>
-#include <string>
 
 namespace Debond
 {
@@ -23,16 +22,13 @@ namespace Debond
     Source        source = Source::box;
     BoxParameters box;
     std::string   file;              ///< that Gmsh reads
-    double        scale  = 1.;       ///< of the lengths in the file
-    double        size   = 0.;       ///< of cells of a geometry, if not 0
-    double        memory = 1e12;     ///< bytes that Gmsh may take
+    double        scale = 1.;        ///< of the lengths in the file
     std::string   generator;         ///< a function of dealii::GridGenerator
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box
     std::string   cuts;              ///< "y = 2, core | ring"
 
-    /// Numbers by name that a .geo file may be given by DefineConstant.
-    std::map<std::string, double> constants;
+    MeshingOptions meshing; ///< of the file
   };
 
   /// The body that the parameters describe. Throws std::invalid_argument if

@@ -3,6 +3,7 @@
 #define debond_mesh_source_mesh_h
 
 #include <debond/mesh/body.h>
+#include <debond/mesh/gmsh_file.h>
 
 #include <string>
 
@@ -25,10 +26,10 @@ namespace Debond
 
   /**
    * The mesh of a Gmsh file, see read_gmsh_file(), with its lengths multiplied
-   * by @p scale. In 2D z must be the same everywhere. Physical groups of faces
-   * are boundaries, those of cells regions, by their names or, without one, by
-   * their numbers. Faces that groups have inside or away from the body belong
-   * to no boundary.
+   * by @p scale; the @p options have lengths of the body. In 2D z must be the
+   * same everywhere. Physical groups of faces are boundaries, those of cells
+   * regions, by their names or, without one, by their numbers. Faces that
+   * groups have inside or away from the body belong to no boundary.
    *
    * Throws std::invalid_argument with file and line if the mesh has cells of
    * several kinds or none, if a cell is flat or so distorted that its centre
@@ -38,11 +39,9 @@ namespace Debond
    */
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string                   &file_name,
-                 const double                         scale,
-                 const double                         size,
-                 const double                         memory,
-                 const std::map<std::string, double> &constants);
+  read_gmsh_mesh(const std::string &file_name,
+                 const double       scale,
+                 MeshingOptions     options);
 
   /**
    * The mesh that deal.II's GridGenerator::generate_from_name_and_arguments()

@@ -96,6 +96,8 @@ namespace Debond
       std::string   line;
       for (unsigned int number = 1; std::getline(file, line); ++number)
         {
+          if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0)
+            line.erase(0, 3); // the mark of UTF-8
           // Commas and semicolons separate columns, as in exported tables; the
           // carriage return is what other systems end lines with.
           std::replace_if(
@@ -152,7 +154,7 @@ namespace Debond
           if (numbers.size() != 2 || !read_number(numbers[0], opening) ||
               !read_number(numbers[1], traction))
             throw std::invalid_argument(
-              "\"" + point + "\" is not OPENING:TRACTION" + comma_hint(text));
+              "\"" + point + "\" is not OPENING:TRACTION" + number_hint(text));
           curve.emplace_back(opening, traction);
         }
       return curve;
