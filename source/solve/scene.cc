@@ -24,6 +24,12 @@ namespace Debond
 {
   namespace
   {
+    /// With fewer unknowns two ranks take about twice the processor time of
+    /// one, or more, so that they are no faster (doc/notes/scale.md).
+    constexpr unsigned int worth_ranks = 100000;
+
+
+
     /// Throws std::invalid_argument if the file has no displacement that the
     /// problem admits.
     template <int dim>
@@ -223,6 +229,14 @@ namespace Debond
     body_notes.insert(body_notes.end(),
                       elastic_problem->load_notes().begin(),
                       elastic_problem->load_notes().end());
+    if (const unsigned int n = number_of_ranks(ranks());
+        n > 1 && n_unknowns() < worth_ranks)
+      body_notes.push_back(words(n,
+                                 " ranks take longer than one for ",
+                                 n_unknowns(),
+                                 " unknowns: they pay from about ",
+                                 worth_ranks,
+                                 " on"));
     if (n_unknowns() == 0)
       body_notes.push_back("no vertex is free, so that there is nothing to "
                            "solve: J is that of the prescribed displacements");
