@@ -266,7 +266,7 @@ def draw_box(axes, points, panel, length):
 
 
 def draw_contact(run):
-    if not run.contact or run.contact.is_unknown.all():
+    if not run.contact or (run.contact.state == "held").all():
         return
     height = 6.
     if run.contact.dim == 3:
@@ -288,7 +288,7 @@ def draw_line(run, both):
             (both[0], "u_nu", "normal displacement" + length, M),
             (both[1], "normal_force_density", "normal force density" +
              run.units["stress"], M * stiffness)):
-        values = numpy.where(contact.is_unknown, numpy.nan, contact.at_nodes(key))
+        values = contact.at_nodes(key)
         for piece, x in pieces:
             axes.plot(x, values[piece], color="0.6", lw=1)
             axes.scatter(x, values[piece], s=10., zorder=3,
@@ -318,13 +318,13 @@ def draw_surface(run, both):
     """Opening and states, in the plane in which the surface is widest."""
     contact, length = run.contact, run.units["length"]
     wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
-    known, free = ~contact.is_unknown, contact.state != "held"
-    opening = colour([both[0]], contact.at_nodes("gap")[known], "opening" + length)
-    for axes, of_shares, which in ((both[0], opening, known),
+    free = contact.state != "held"
+    opening = colour([both[0]], contact.at_nodes("gap"), "opening" + length)
+    for axes, of_shares, which in ((both[0], opening, slice(None)),
                                    (both[1], colours_of(contact.state[free]), free)):
         axes.add_collection(PolyCollection(
             contact.polygons[which][:, :, wide], facecolors=of_shares,
-            edgecolors="face", linewidths=0.8, rasterized=len(known) > MOST_VECTORS))
+            edgecolors="face", linewidths=0.8, rasterized=len(free) > MOST_VECTORS))
         axes.grid(False)
         axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
         axes.autoscale_view()

@@ -145,7 +145,7 @@ def along_contact(plot, study, rows):
             plot.axes.set_xlabel(name if len(name) > 1 else
                                  f"{name} along the contact boundary")
             line = "o" if contact.dim == 3 else "-" if title == "u_nu" else "o-"
-            values = numpy.where(contact.is_unknown, numpy.nan, contact.at_nodes(title))
+            values = contact.at_nodes(title)
             for k, (piece, x) in enumerate(pieces):
                 plot.add(None if k else row.case.label, x, values[piece], line,
                          belongs=k > 0)

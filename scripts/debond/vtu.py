@@ -78,13 +78,6 @@ class Contact:
         names.insert(zero + 5, "held")
         numbers = self.mesh.cell_data["bond_state"][0].astype(int).ravel()
         self.state = numpy.array(names)[zero + numbers]
-        # Held nodes have no u_nu, and in the middle of edges with held ends it
-        # is that of ends at rest.
-        self.is_unknown = self.state == "held"
-        if self.degree == 2:
-            faces = self.is_unknown.reshape(-1, self.dim).any(axis=1)
-            unknown = {*map(tuple, self.nodes[faces.repeat(self.dim)])}
-            self.is_unknown = numpy.array([tuple(x) in unknown for x in self.nodes])
 
     def at_nodes(self, name):
         return self.mesh.point_data[name][self.first]

@@ -667,6 +667,7 @@ namespace Debond
         std::max(found.rounding.linfty_norm(), found.rounding_of_gaps) /
           found.largest() :
         0.;
+    result.displacement_factor = factors.displacements;
     result.displacements =
       contact_displacements(problem.unknowns(), displacement);
     return result;

@@ -163,8 +163,6 @@ namespace Debond
       std::function<double(const ContactNodeState &, double)> value;
 
       /// As the displacement, of which edges have coefficients of degree 2.
-      /// Held nodes do not move; what a clamp bears there is not the
-      /// foundation's.
       bool is_displacement = false;
     };
 
@@ -190,28 +188,48 @@ namespace Debond
 
 
 
+    /// Returns the values of the k-th coefficient on a face. Of a held vertex
+    /// the normal displacement is known, and no force is the foundation's.
     template <int dim>
     ContactValues
-    values_of(const ContactBoundary<dim> &boundary,
-              const Verification<dim>    &verification,
-              const unsigned int          node)
+    values_of(const ContactBoundary<dim>                &boundary,
+              const Verification<dim>                   &verification,
+              const typename ContactBoundary<dim>::Face &face,
+              const unsigned int                         k)
     {
-      constexpr double nan     = std::numeric_limits<double>::quiet_NaN();
-      const bool       is_held = node == dealii::numbers::invalid_unsigned_int;
-      const double     measure = is_held ? 1. : boundary.nodes[node].measure;
-      ContactValues    values;
-      for (unsigned int d = 0; d < 3; ++d)
-        values.push_back(
-          is_held || d >= dim ? 0. : verification.displacements[node][d]);
-      for (unsigned int d = 0; d < 3; ++d)
-        values.push_back(d >= dim ? 0. :
-                         is_held  ? nan :
-                                    verification.tangential_forces[node][d] /
-                                     measure);
+      constexpr double       nan = std::numeric_limits<double>::quiet_NaN();
+      dealii::Tensor<1, dim> u, force;
+      ContactNodeState       state   = {};
+      double                 measure = 1.;
+      if (!face.is_held(k))
+        {
+          const unsigned int node = face.node(k);
+          u                       = verification.displacements[node];
+          measure                 = boundary.nodes[node].measure;
+          force = verification.tangential_forces[node] / measure;
+          state = verification.nodes[node];
+        }
+      else
+        {
+          if (!boundary.held_vertices.empty())
+            {
+              const auto &held = boundary.held_vertices[face.held_at(k)];
+              state.u_nu =
+                verification.displacement_factor * held.normal_displacement;
+              state.s = state.u_nu - held.gap;
+              u       = state.u_nu * held.normal;
+            }
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] = nan;
+          state.normal_force = state.violation = state.damage = nan;
+          state.bond_stiffness = state.bond_threshold = nan;
+        }
+      ContactValues values;
+      for (const dealii::Tensor<1, dim> &vector : {u, force})
+        for (unsigned int d = 0; d < 3; ++d)
+          values.push_back(d < dim ? vector[d] : 0.);
       for (const ContactScalar &scalar : contact_scalars)
-        values.push_back(is_held ?
-                           (scalar.is_displacement ? 0. : nan) :
-                           scalar.value(verification.nodes[node], measure));
+        values.push_back(scalar.value(state, measure));
       return values;
     }
 
@@ -227,7 +245,7 @@ namespace Debond
               const unsigned int                         k)
     {
       const auto of = [&](const unsigned int vertex) {
-        return values_of(boundary, verification, face.node(vertex));
+        return values_of(boundary, verification, face, vertex);
       };
       ContactValues values = of(k);
       if (k < dim)

@@ -129,6 +129,20 @@ check_files("plane", 2, 80, 53, 10, *plane_strain)
 # Fields of more than one block.
 check_files("fine", 2, 40960, 20833, 320, *plane_strain, "Mesh/Cells=320, 32")
 check_files("solid", 3, 384, 144, 64, *SOLID, "Mesh/Cells=8, 1, 2")
+# Held vertices move with what they are given, and so do the edges beside them.
+for degree in "1", "2":
+    lifted, _, _ = solve("lifted" + degree, *PLANE, "Mesh/Degree=" + degree,
+                         "Contact law/Quadrature=gauss 4", "Load path/Displacement factors=0, 2",
+                         "Boundary conditions/Clamped boundaries=left",
+                         "Boundary conditions/Displacement right=0; 0.001")
+    body, contact = Piece(lifted / "body.vtu"), Piece(lifted / "contact.vtu")
+    heights = {place(body, i): body.at_points["displacement"][3 * i + 1]
+               for i in range(body.n_points)}
+    found = [(heights[place(contact, i)], -contact.at_points["u_nu"][i],
+              contact.at_points["gap"][i], contact.at_points["displacement"][3 * i + 1])
+             for i in range(contact.n_points) if place(contact, i) in heights]
+    check("lifted end", abs(found[-1][0] - 0.002) < 1e-8 and len(found) >= 20, found[-1])
+    check("as in the body", all(max(of) - min(of) < 1e-7 for of in found))
 closed, _, profile = solve("closed", *PLANE, "Load path/Factors=9, 0", "Load path/Bonds heal=false",
                            "Output/Load path contact VTU=true")
 check_contact(closed, profile, 2, 10)

@@ -80,6 +80,9 @@ namespace Debond
     /// The states in the order of ContactBoundary::nodes.
     std::vector<ContactNodeState> nodes;
 
+    /// That of the prescribed displacements.
+    double displacement_factor = 1.;
+
     std::vector<std::string> state_names; ///< see state_names()
 
     /**
