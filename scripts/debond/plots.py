@@ -199,7 +199,7 @@ def columns(study, rows, kind, log):
 
 ERROR = "(J(x_k) - J_min) / |J_min|"
 KINDS = {
-    "convergence": (over_iterations, "The distance from the exact minimum of the "
+    "convergence": (over_iterations, "The distance from J_min of the "
                     "mesh over the iterations.", "iteration k", ERROR, "xy"),
     "fit": (over_iterations, "Fitted lines C k^rate, each in the window it is "
             "fitted on.", "iteration k", ERROR, "xy"),

@@ -120,9 +120,9 @@ class Results:
 
 def text(value):
     """A value of a setting as scenes have it."""
-    if isinstance(value, (list, tuple, numpy.ndarray)):
+    if numpy.ndim(value):
         return ", ".join(map(text, value))
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    return str(value).lower() if isinstance(value, (bool, numpy.bool_)) else str(value)
 
 
 def run(scene, settings=None, directory=None, ranks=1, check=True):
@@ -137,14 +137,22 @@ def run(scene, settings=None, directory=None, ranks=1, check=True):
         command = ["mpirun", "-n", str(ranks), *command]
     for name, value in settings.items():
         command += ["--set", f"{name}={text(value)}"]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, errors="replace", check=False)
-    said = re.findall(r"^debond: (.*)", done.stderr, flags=re.M)
-    written = re.findall(r"^  (.*)summary\.json$", done.stdout, flags=re.M)
-    results = Results(written[-1], done.stdout, done.returncode) if written else None
-    if done.returncode and (check or not results):
-        raise Error("\n".join(said) or done.stderr.strip() or
-                    f"ended with {done.returncode}", done.returncode, results)
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, errors="replace",
+                          start_new_session=True) as child:  # Ctrl-C is for Python
+        try:
+            log, errors = child.communicate()
+        except KeyboardInterrupt:
+            child.terminate()  # it writes what it has
+            child.communicate()
+            raise
+    code = child.returncode
+    said = re.findall(r"^debond: (.*)", errors, flags=re.M)
+    written = re.findall(r"^  (.*)summary\.json$", log, flags=re.M)
+    results = Results(written[-1], log, code) if written else None
+    if code and (check or not results):
+        raise Error("\n".join(said) or errors.strip() or f"ended with {code}", code,
+                    results)
     return results
 
 

@@ -251,10 +251,12 @@ namespace Debond
                               const std::string                  &units)
   {
     // A member that is not set has the default of nothing.
-    const Pattern or_nothing(pattern.description(),
-                             [pattern](const std::string &value) {
-                               return value.empty() || pattern.match(value);
-                             });
+    const Pattern or_nothing =
+      pattern.allows_any_text() ?
+        pattern :
+        Pattern(pattern.description(), [pattern](const std::string &value) {
+          return value.empty() || pattern.match(value);
+        });
     families.emplace(path, Family{&variable, or_nothing, documentation, units});
   }
 
@@ -574,7 +576,7 @@ namespace Debond
   {
     const auto is_default = [](const Entry &entry) {
       double a, b;
-      return entry.value == entry.default_value ||
+      return entry.value.empty() || entry.value == entry.default_value ||
              (read_number(entry.value, a) &&
               read_number(entry.default_value, b) && a == b);
     };

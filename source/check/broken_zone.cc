@@ -177,13 +177,12 @@ namespace Debond
           {
             const BondScale bonds =
               adhesion.points().bonds_at(face, just_inside<dim>(k));
-            beyond[k] = -trace[k] - law.bond_threshold() * bonds.stretch;
-            grip[k] =
-              bonds.energy == 0. ||
-                  law.pieces().index(adhesion.reached_at(face, k)) == last ?
-                0 :
-              beyond[k] < 0. ? 2 :
-                               1;
+            // What has broken for good stays broken where it closes.
+            beyond[k] =
+              std::max(-trace[k],
+                       -adhesion.reached_at(face, k) * bonds.stretch) -
+              law.bond_threshold() * bonds.stretch;
+            grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
             const dealii::Point<dim> &vertex = face.vertices[k];
             const auto [other, is_first] =
               grips[vertex[0]].emplace(vertex[1], grip[k]);

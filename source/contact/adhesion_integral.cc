@@ -75,14 +75,21 @@ namespace Debond
       return;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_nodes());
     phi_at_zero                = value(zero);
-    // The largest memory around a node: a node counts as broken where all bonds
-    // around it are.
+    if (broken.empty())
+      return;
+    // The largest memory that a node has by the points of the faces around it:
+    // a node counts as broken where all of them say so.
     reached_of_nodes.assign(n_nodes(), -std::numeric_limits<double>::max());
-    for_each_point(zero, [&](const auto &point, double, double reached) {
-      for (unsigned int k = 0; k < point.n_nodes; ++k)
-        reached_of_nodes[point.index[k]] =
-          std::max(reached_of_nodes[point.index[k]], reached);
-    });
+    for (const Face &face : contact_boundary().faces)
+      {
+        const auto memory = contact_points.coefficients(face, broken);
+        for (unsigned int k = 0; k < contact_boundary().n_face_nodes(); ++k)
+          if (!face.is_held(k))
+            {
+              double &reached = reached_of_nodes[face.node(k)];
+              reached         = std::max(reached, std::min(memory[k], 0.));
+            }
+      }
   }
 
 
@@ -92,16 +99,11 @@ namespace Debond
   AdhesionIntegral<dim>::reached_at(const Face        &face,
                                     const unsigned int vertex) const
   {
-    // A held vertex has no entry in reached_of_nodes. With nodal quadrature it
-    // is a quadrature point itself, whose memory is found by its place on the
-    // face; with the other rules no point lies on it.
+    if (broken.empty())
+      return 0.;
     if (!face.is_held(vertex))
       return reached(face.nodes[vertex]);
-    if (!contact_points.is_nodal())
-      return 0.;
-    Barycentric place = {};
-    place[vertex]     = 1.;
-    return reached_at(face, place);
+    return std::min(contact_points.coefficients(face, broken)[vertex], 0.);
   }
 
 

@@ -2,6 +2,8 @@
 #include <debond/contact/contact_points.h>
 #include <debond/optimization/interval.h>
 
+#include <Eigen/QR>
+
 #include <cmath>
 
 namespace Debond
@@ -200,6 +202,32 @@ namespace Debond
     for (unsigned int k = 0; k < dim; ++k)
       position += place[k] * face.vertices[k];
     return bonds_at(position, face.id);
+  }
+
+
+
+  template <int dim>
+  typename ContactPoints<dim>::Trace
+  ContactPoints<dim>::coefficients(const Face                &face,
+                                   const std::vector<double> &values) const
+  {
+    const auto        &rule = quadrature.points();
+    const unsigned int n    = contact.n_face_nodes();
+    Eigen::MatrixXd    shapes(rule.size(), n);
+    Eigen::VectorXd    at_points(rule.size());
+    for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        const auto shape = bernstein(rule[q].barycentric, contact.degree);
+        for (unsigned int k = 0; k < n; ++k)
+          shapes(q, k) = shape[k];
+        at_points(q) = values[nearest(face, rule[q].barycentric)];
+      }
+    Trace result;
+    result.fill(at_points.maxCoeff());
+    if (rule.size() >= n)
+      Eigen::Map<Eigen::VectorXd>(result.data(), n) =
+        shapes.colPivHouseholderQr().solve(at_points);
+    return result;
   }
 
 

@@ -6,11 +6,13 @@
 #include <debond/base/text.h>
 #include <debond/input/expression.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/io/ios_state.hpp>
 
 #include <cctype>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -116,7 +118,10 @@ namespace Debond
           variables.empty() ?
             dealii::FunctionParser<dim>::default_variable_names() :
             variables,
-          expressions,
+          boost::replace_all_copy(
+            boost::replace_all_copy(expressions, "||", " || "),
+            "&&",
+            " && "), // or it reads no name behind
           all_constants);
         // FunctionParser parses when it is evaluated first.
         for (unsigned int component = 0; component < n_components; ++component)
@@ -184,7 +189,8 @@ namespace Debond
               ++it;
             }
         if (expressions.size() == n_left)
-          throw EntryError(name, reason);
+          throw EntryError(name,
+                           reason + " (no circle of constants has values)");
       }
     return constants;
   }
@@ -198,22 +204,30 @@ namespace Debond
       const std::string text = dealii::Utilities::trim(item);
       double            value;
       // Most words are none, which muParser would take long to say.
-      if (read_number(text, value) ||
-          (text.find_first_of("+-*/^(") == std::string::npos &&
-           constants.count(text) == 0 && text != "pi"))
+      const bool is_number = read_number(text, value);
+      if (!is_number && text.find_first_of("+-*/^(") == std::string::npos &&
+          constants.count(text) == 0 && text != "pi")
         return item;
       try
         {
-          value = constant_value(text, constants);
+          if (!is_number)
+            value = constant_value(text, constants);
         }
       catch (const std::invalid_argument &)
         {
           return item;
         }
-      const bool is_whole = value == std::round(value) && std::abs(value) < 1e9;
-      return item.substr(0, item.find(text)) +
-             (is_whole ? std::to_string(std::lround(value)) :
-                         shortest_text(value));
+      // Numbers of cells may be written as 20.0, and 0.3 / 0.1 is 3 but for
+      // rounding.
+      const bool is_whole =
+        std::abs(value - std::round(value)) <=
+          4. * std::numeric_limits<double>::epsilon() * std::abs(value) &&
+        std::abs(value) < 1e9;
+      return is_number && !is_whole ?
+               item :
+               item.substr(0, item.find(text)) +
+                 (is_whole ? std::to_string(std::lround(value)) :
+                             shortest_text(value));
     };
     std::string  result, item;
     unsigned int n_open = 0; // brackets

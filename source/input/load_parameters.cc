@@ -35,7 +35,8 @@ namespace Debond
     const std::string constants_section = "Constants/";
     const std::string constants_list    = "Loads/Constants";
 
-    const std::string name_of_constant = "(?![xyz]\\b)[A-Za-z_]\\w*";
+    const std::string name_of_constant =
+      "(?!([xyz]|free|true|false)\\b)[A-Za-z_]\\w*";
 
 
 
@@ -137,7 +138,7 @@ namespace Debond
               [list](const std::string &text) {
                 return std::regex_match(text, list);
               }),
-      "Constants in one line, such as 'q=0.69, L=0.4'; those of the section Constants come before them",
+      "Constants in one line, such as 'q=0.69, L=0.4', beside those of the section Constants",
       "those that the entries need",
       [](const std::string &) {});
   }
@@ -157,14 +158,7 @@ namespace Debond
           texts[parts[0]]   = parts[1];
         }
     const auto locations = table.locations();
-    for (const auto &[path, unused] : locations)
-      if (boost::starts_with(path, constants_section))
-        {
-          const std::string name = path.substr(constants_section.size());
-          entries[name]          = path;
-          texts[name]            = table.get(path);
-        }
-    const auto error_of = [&](const std::string &name,
+    const auto error_of  = [&](const std::string &name,
                               const std::string &reason) {
       const std::string &entry = entries.at(name);
       return BadInput({words(locations.at(entry),
@@ -175,11 +169,20 @@ namespace Debond
                              ": ",
                              reason)});
     };
+    for (const auto &[path, unused] : locations)
+      if (boost::starts_with(path, constants_section))
+        {
+          const std::string name = path.substr(constants_section.size());
+          const bool is_first    = entries.insert_or_assign(name, path).second;
+          texts[name]            = table.get(path);
+          if (!is_first)
+            throw error_of(name, "it is in Loads/Constants too");
+        }
     for (const auto &[name, unused] : entries)
       if (!std::regex_match(name, std::regex(name_of_constant)))
         throw error_of(
           name,
-          "the name of a constant has letters, digits and _, begins with no digit, and is not x, y or z");
+          "the name of a constant has letters, digits and _, begins with no digit, and is not x, y, z, free, true or false");
     try
       {
         return evaluate_constants(texts);

@@ -140,7 +140,7 @@ namespace Debond
       {{"none", GlobalBranch::none},
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
-      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor, prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (with Displacement factors the default is none), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
     table.bind(
       "Load path/Arc",
       load_path.arc,
@@ -164,6 +164,11 @@ namespace Debond
         const std::string path = "Load path/Displacement factors";
         if (supports.displacements.empty())
           table.reject(path, "the scene prescribes no displacement");
+        // It takes up to twenty times as long as the path itself, which only
+        // those who ask for it should wait for.
+        const std::string branch = "Load path/Global branch";
+        if (!table.is_set(branch))
+          table.derive(branch, "none", path);
         if (factors.empty())
           factors.push_back(1.);
         if (factors.size() == 1)

@@ -129,7 +129,7 @@ namespace Debond
     table.bind(
       "Mesh/Arguments",
       body.arguments,
-      Pattern("a text", [](const std::string &) { return true; }),
+      text_with_numbers("a text"),
       "All arguments of the generator, separated by colons, coordinates by commas, as in '0, 0 : 1 : false'",
       "those of the generator");
     table.bind(
@@ -251,7 +251,7 @@ namespace Debond
           if (boundaries.count(part.boundary) == 0 &&
               part.boundary != whole_boundary)
             throw std::invalid_argument(
-              words("the body has no boundary ",
+              words("the body itself has no boundary ",
                     part.boundary,
                     ", but ",
                     join({boundaries.begin(), boundaries.end()}, ", "),

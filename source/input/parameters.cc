@@ -313,6 +313,9 @@ namespace Debond
             return true;
         return false;
       };
+      if (body.source == BodyParameters::Source::file &&
+          !is_given("Material/Young"))
+        table.notes.push_back("the Young modulus is the default one, 69 GPa");
       if (table.is_set("Material/Young modulus") &&
           !p.contact_boundaries.empty() && p.law.name == "winkler" &&
           !is_given("Contact law/Bond") &&

@@ -86,8 +86,7 @@ namespace Debond
     table.bind_family(
       "Probes/",
       probes,
-      Pattern("a point, 'mean NAME' or 'force NAME'",
-              [](const std::string &) { return true; }),
+      text_with_numbers("a point, 'mean NAME' or 'force NAME'"),
       "A vector that the log, summary.json and load_path.csv have by this name: the displacement at a point, such as '0.4, 0.02', its mean over a boundary, a region or a part ('mean right'), or the force that supports and foundation exert on the body at a boundary or a part of it ('force left')");
   }
 

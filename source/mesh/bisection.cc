@@ -120,7 +120,8 @@ namespace Debond
       throw std::invalid_argument(
         "the mesh cannot be refined locally: its tetrahedra are not those of "
         "crossed hexahedra, and its vertices cannot have four colours such that "
-        "no two of a tetrahedron are alike");
+        "no two of a tetrahedron are alike. A smaller Mesh/Size, or Mesh/Degree "
+        "= 2, is more accurate too");
   }
 
 

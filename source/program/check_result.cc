@@ -274,7 +274,11 @@ namespace Debond
 
     if (!is_loaded)
       result.notes.push_back("the scene has no load");
-    else if (scene.problem().load(result.solve.load_factor).linfty_norm() == 0.)
+    else if (scene.problem()
+                 .fields()
+                 .applied_nodal_forces(result.solve.load_factor)
+                 .linfty_norm() > 0. &&
+             scene.problem().load(result.solve.load_factor).linfty_norm() == 0.)
       result.notes.push_back(
         "all loads act where the body cannot move: on supports, or along a "
         "contact boundary with Contact law/Tangential displacement = fixed");

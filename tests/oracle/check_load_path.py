@@ -140,6 +140,27 @@ def check_broken_but_closed(dim, quadrature, degree):
               state in ("contact", "broken but closed"), 1e-12, 1.)
 
 
+def check_fronts_stay():
+    """A strip is peeled from its right end and laid down again: bonds that broke for good leave
+    the front where it was, and the broken part does not shrink before the gap closes."""
+    for quadrature, *others in (["nodal"], ["gauss 3"], ["gauss 4", "Mesh/Degree=2"]):
+        scenes.section(f"Fronts while a crack closes, {quadrature}, {others}")
+        path = solve("Mesh/Lengths=0.4, 0.02", "Mesh/Cells=40, 2", "Material/Young modulus=100",
+                     "Boundary conditions/Clamped boundaries=left",
+                     "Boundary conditions/Contact boundary=bottom",
+                     "Contact law/Bond stiffness=100", f"Contact law/Bond threshold={0.1 * M}",
+                     "Contact law/Tangential displacement=free",
+                     "Boundary conditions/Displacement right=free; 0.03",
+                     "Load path/Displacement factors=0:0.1:1, 0.9:-0.1:0.3",
+                     "Load path/Bonds heal=false", "Contact law/Quadrature=" + quadrature,
+                     *others)["path"]
+        fronts = [float(row["fronts"].split()[0]) for row in path[10:]]
+        check("it ran", 0.1 < fronts[0] < 0.35, fronts)
+        check("it stays", max(fronts) - min(fronts) < 1e-10, fronts)
+        parts = [row["broken_part"] for row in path[10:]]
+        check("what is broken", min(parts) == max(parts) > 0.2, parts)
+
+
 def check_moved_column(dim, name, n_steps, *entries):
     """Pulled by its top, it has a linear way from the displacement d = 0 to the snap at
     M (1 + a/k), has no force then, and closes at M. The least J is that without bonds from
@@ -173,7 +194,8 @@ def check_moved_columns(dim, quadrature):
     sum of all forces."""
     check_moved_column(dim, "quadratic", 43, "Mesh/Degree=2",
                        "Contact law/Quadrature=" + quadrature,
-                       "Load path/Displacement factors=-0.01, 0:0.003:0.06, 0.06:-0.003:0")
+                       "Load path/Displacement factors=-0.01, 0:0.003:0.06, 0.06:-0.003:0",
+                       "Load path/Global branch=search")
     free = "; free" * (dim == 3)
     check_moved_column(dim, "tack test", 16,
                        "Mesh/Cells=" + ("24, 16" if dim == 2 else "3, 3, 2"),
@@ -192,7 +214,8 @@ def check_pulled_and_moved(dim):
     entries = [*moved(dim), "Loads/Traction bottom=0; 1" + "; 0" * (dim == 3)]
     for name, factors, *others in (
             ("both vary", ", ".join(map(str, pulls)), "Load path/Global branch=prove"),
-            ("dead loads", "0", "Load path/Dead loads=bottom", "Contact law/Quadrature=gauss 2")):
+            ("dead loads", "0", "Load path/Dead loads=bottom", "Contact law/Quadrature=gauss 2",
+             "Load path/Global branch=search")):
         scenes.section(f"Column pulled and moved in {dim}D, {name}")
         path = column(dim, *entries, "Load path/Factors=" + factors, *others,
                       "Load path/Displacement factors=" + ", ".join(map(str, moves)))["path"]
@@ -580,7 +603,7 @@ scenes.together(*(("", *check) for check in (
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
     [check_broken_but_closed, 2, "nodal", 1], [check_broken_but_closed, 3, "gauss 2", 2],
-    [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
+    [check_fronts_stay], [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
     [check_parts], [check_refined], [check_cells_at_edge],
     [check_estimate_for_good], [check_search_beside_path])))
 scenes.end()

@@ -90,6 +90,13 @@ expect_code 2 "$debond" including.prm
 grep -qE '^debond: parts/base.prm:6: unknown parameter Colour' errors ||
   fail "an error in an included file: $(cat errors)"
 
+# Numbers of cells as numbers, rounding in expressions, what muParser takes for an
+# operator, and constants in lists.
+expect_code 0 "$debond" defaults.prm --validate --set "Mesh/Cells=20.0, 0.3/0.1" \
+  --set "Loads/Traction top=0; if(x<0.1||x>0.3&&y>0, 1, 0)" --set Constants/d=0.001 \
+  --set "Contact law/Law=curve" --set "Contact law/Curve=0:0, d:2*d, 2*d:0" \
+  --set "Contact law/Bond stiffness=" --set "Contact law/Bond threshold="
+
 # An include behind what it sets again would undo that; a comment that ends in a
 # backslash does not swallow the next line.
 printf 'set Dimension = 3\n' >base.prm

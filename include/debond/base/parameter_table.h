@@ -81,6 +81,14 @@ namespace Debond
   Pattern
   quantity(const bool may_be_zero = false);
 
+  /// Any text with items between commas, semicolons and colons that may be
+  /// expressions of constants.
+  inline Pattern
+  text_with_numbers(const std::string &words)
+  {
+    return Pattern(words, [](const std::string &) { return true; });
+  }
+
   Pattern
   whole_number(const int smallest, const int largest);
 

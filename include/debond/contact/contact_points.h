@@ -105,6 +105,12 @@ namespace Debond
       return field != nullptr;
     }
 
+    /// Returns the coefficients on a face, see bernstein(), of what has these
+    /// @p values at all points: by least squares or, if the rule has less
+    /// points than coefficients, the largest value for each.
+    Trace
+    coefficients(const Face &face, const std::vector<double> &values) const;
+
     /// The number of the point of the rule on a face that is next to a place,
     /// by the face's barycentric coordinates.
     unsigned int

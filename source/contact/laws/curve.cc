@@ -252,7 +252,7 @@ namespace Debond
         table.bind(
           curve_path,
           entries->points,
-          Pattern("nothing, or a list of OPENING:TRACTION"),
+          text_with_numbers("nothing, or a list of OPENING:TRACTION"),
           "Tractions over the opening, straight between the points of the list; at an opening that is there twice the traction drops. The first opening is 0, the last traction, which holds from there on, mostly 0",
           "length:force per area");
         table.bind(

@@ -83,9 +83,11 @@ namespace Debond
               std::make_pair(of_energy, &bonds.energy)})
           if (!table.is_set(path) || !read_number(table.get(path), *number))
             {
-              table.reject(path,
-                           "bonds that soften need a Bond stiffness, a Bond "
-                           "strength and a Fracture energy, three numbers");
+              table.reject(
+                path,
+                "bonds that soften need a Bond stiffness, a Bond "
+                "strength and a Fracture energy, three numbers; where they "
+                "differ, Traction factor says");
               has_all = false;
             }
         if (!has_all)
