@@ -2,7 +2,7 @@
 """Draws what a run has written in its output directory."""
 
 import argparse
-import collections
+import difflib
 import os
 import re
 import sys
@@ -24,11 +24,14 @@ ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
 # colours leave out: stress at corners grows without bound with refinement.
 LARGEST_SHOWN = 0.06
 CUT = 0.995
+# Up to this part of the largest displacement of a load path, openings are rounding.
+NEGLIGIBLE = 1e-6
 PIXELS = 1000.  # about the width of a body
 MOST_VECTORS = 20000  # more polygons are an image in SVG files, too
 FROM_ABOVE, FROM_BELOW = (-65, 25), (-65, -25)  # azimuth and elevation
 STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
-          "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray"}
+          "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray",
+          "held": "0.8"}
 OTHER_STATE = "tab:purple"
 FORCES = {("mm", "MPa"): "N", ("mm", "N/mm²"): "N", ("mm", "GPa"): "kN",
           ("m", "Pa"): "N", ("m", "kPa"): "kN", ("m", "MPa"): "MN",
@@ -55,7 +58,9 @@ COLUMNS = [
 def endings(text, dim):
     """What follows the words for what is measured, by 'LENGTH, STRESS'. In 2D
     forces and energies are per thickness."""
-    length, stress, *_ = [word.strip() for word in text.split(",")] + [""]
+    length, _, stress = (word.strip() for word in text.partition(","))
+    if text and not (length and stress):
+        raise BadInput(f"the units '{text}' are not LENGTH, STRESS as in 'mm, MPa'")
     force = FORCES.get((length, stress.replace("^2", "²")),
                        stress and f"{stress} {length}²")
     per = f"/{length}" if dim == 2 else ""
@@ -75,7 +80,7 @@ def words_for(column, units):
 
 
 class Run:
-    """A directory with results; with a step those of that step of a load path."""
+    """A directory with results; of a load path those of a step, or the last one."""
 
     def __init__(self, directory, step, units):
         self.directory, self.step, self.title = directory, step, ""
@@ -83,18 +88,27 @@ class Run:
         if not self.summary:
             raise BadInput(f"{directory} has no summary.json of a run")
         self.units = endings(units, self.summary["dimension"])
-        self.load_path = read_csv(os.path.join(directory, "load_path.csv"))
-        self.factor = ("factor" if numpy.ptp(self.load_path.get("factor", 0.)) else
-                       "displacement_factor")
-        if step:
-            steps = [*self.load_path.get("step", [])]
-            if step not in steps:
-                raise BadInput(f"{directory} has no step {step}, but {len(steps)}")
-            factor = self.load_path[self.factor][steps.index(step)]
-            self.title = (f"step {step} of {len(steps)}, "
-                          f"{words_for(self.factor, self.units)} {factor:.4g}\n")
+        path = self.load_path = read_csv(os.path.join(directory, "load_path.csv"))
+        self.factor = max(("factor", "displacement_factor"), key=lambda name: (
+            numpy.ptp(path.get(name, 0.)) > 0, numpy.any(path.get(name, 1.) != 1)))
+        n = len(path.get("step", []))
+        if not 0 <= step <= n:
+            raise BadInput(f"{directory} has no step {step}, but {n}")
+        if n:
+            words, factor = words_for(self.factor, self.units), path[self.factor]
+            self.title = f"step {step or n} of {n}, {words} {factor[step - 1]:.4g}\n"
+        # What load_path.csv knows of the largest displacement in all steps.
+        self.largest = max([0., *(
+            numpy.nanmax(abs(values)) for name, values in path.items()
+            if re.fullmatch("largest_gap|mean_.*_.", name))])
         files = self.files("contact")
         self.contact = vtu.Contact(files[0], self.summary) if files else None
+        if files:
+            fields, state = self.contact.mesh.point_data, self.contact.state
+            for values in fields["gap"], fields["u_nu"]:
+                values[abs(values) < NEGLIGIBLE * self.largest] = 0.
+            state[(state == "broken") & (self.contact.at_nodes("gap") == 0)] = (
+                "broken but closed")
 
     def files(self, name):
         file, entry = name, name.capitalize()
@@ -111,15 +125,12 @@ class Run:
                    f"{name}-{self.step}" if self.step else name)
 
     def legend(self, axes, before, **style):
-        """What the colours of states mean, with the numbers of nodes."""
-        contact, handles = self.contact, [*before]
-        nodes = {*zip(*contact.nodes.T, contact.at_nodes("u_nu"), contact.state)
-                 } if contact else {}
-        for state, n in collections.Counter(one[-1] for one in sorted(nodes)).items():
-            if state != "held":
-                handles.append(Line2D([], [], color=STATES.get(state, OTHER_STATE),
-                                      label=f"{state} ({n})", **style))
-        axes.legend(handles=handles, **ABOVE)
+        """What the colours of states mean, with their parts of the boundary."""
+        parts = self.contact.parts() if self.contact else {}
+        axes.legend(handles=[*before, *(
+            Line2D([], [], color=STATES.get(state, OTHER_STATE), label=state + (
+                f" ({part:.1%})" if state != "held" else ""), **style)
+            for state, part in parts.items())], **ABOVE)
 
 
 def colours_of(states):
@@ -128,15 +139,16 @@ def colours_of(states):
 
 def views(body, contact, wanted):
     """Of each picture the directions right, up and to the viewer. In 3D the
-    direction away from the contact boundary points up; what is below the body is
-    seen from below as well."""
+    direction away from the contact boundary points up, or at a cut its coordinate;
+    what is below the body is seen from below as well."""
     if body.dim == 2:
         return [numpy.eye(3)]
     axis, away, angles = 1, 1., [FROM_ABOVE]
     if contact:
         axis = numpy.argmin(numpy.ptp(contact.nodes, axis=0))
         of_body, of_contact = body.points[:, axis], contact.nodes[:, axis]
-        away = -1. if of_body.mean() < of_contact.mean() else 1.
+        if of_body.max() < of_contact.max() + 1e-6 * body.size:
+            away = -1. if of_body.mean() < of_contact.mean() else 1.
         if (away * of_body).min() > (away * of_contact).min() - 1e-6 * body.size:
             angles = [FROM_ABOVE, FROM_BELOW]
     up = away * numpy.eye(3)[axis]
@@ -149,19 +161,26 @@ def views(body, contact, wanted):
     return result
 
 
-def colour(axes, values, title):
-    """The colours of values, with a bar that says what they leave out."""
-    low, top, largest = min(0., values.min()), numpy.quantile(values, CUT), values.max()
-    if top <= 0 or largest < 1.2 * top:
-        top = largest
-    cut = (values > top).sum()
-    if cut:
-        title += (f"; {cut} cells above {top:.3g} cut off, the largest is "
-                  f"{largest:.3g}")
-    scale = ScalarMappable(colors.Normalize(low, top if top > low else low + 1.))
-    axes[0].figure.colorbar(scale, ax=axes, orientation="horizontal", shrink=0.7,
-                            aspect=45, label=title, extend="max" if cut else "neither")
-    return scale.to_rgba(values)
+def colour(axes, values, title, signed="RdBu_r"):
+    """A scale of colours for values, which on both sides of 0 has the colours
+    `signed`, with a bar that says what it leaves out."""
+    low, top = (largest if cut <= 0 or largest < 1.2 * cut else cut
+                for sizes in (-values, values)
+                for cut, largest in [(numpy.quantile(sizes, CUT), sizes.max())])
+    cut, ticks = numpy.array([values < -low, values > top]), None
+    if cut.any():
+        title += (f"; {cut.sum() / len(values):.1%} cut off, the values are "
+                  f"{values.min():.3g} to {values.max():.3g}")
+    scale = ScalarMappable(colors.Normalize(0., top or 1.))
+    if low > 1e-9 * top:
+        low, top = (max(side, 1e-3 * max(low, top)) for side in (low, top))
+        scale = ScalarMappable(colors.TwoSlopeNorm(0., -low, top), signed)
+        ticks = [-low, -low / 2, 0., top / 2, top]
+    axes[0].figure.colorbar(
+        scale, ax=axes, orientation="horizontal", shrink=0.7, aspect=45, label=title,
+        ticks=ticks, format="%.3g" if ticks else None,
+        extend=["neither", "min", "max", "both"][cut.any(axis=1) @ [1, 2]])
+    return scale
 
 
 def draw_body(run, field, wanted):
@@ -171,7 +190,8 @@ def draw_body(run, field, wanted):
     body = vtu.Body(files)
     u, values = body.at_points("displacement"), body.in_cells(field)
     largest = numpy.linalg.norm(u, axis=1).max()
-    scale = LARGEST_SHOWN * body.size / largest if largest > 1e-12 * body.size else 1.
+    shown = max(largest, run.largest)  # all steps of a path in nearly one scale
+    scale = LARGEST_SHOWN * body.size / shown if shown > 1e-12 * body.size else 1.
     scale = float(f"{scale:.0e}")  # one digit, so that it can be said
     panels = views(body, run.contact, wanted)
     width, height, _ = numpy.ptp(numpy.concatenate(
@@ -180,7 +200,7 @@ def draw_body(run, field, wanted):
         10., min(2.4 + len(panels) * 10. * height / width, 9.)))
     what = {"displacement": "length", "region": ""}.get(field, "stress")
     colours = colour([*all_axes.flat], values, field.replace("_", " ").replace(
-        "von mises", "von Mises stress") + run.units[what])
+        "von mises", "von Mises stress") + run.units[what]).to_rgba(values)
     length, before = run.units["length"], []
     for axes, panel in zip(all_axes.flat, panels):
         draw_panel(axes, run, body, (body.points + scale * u) @ panel.T, colours,
@@ -215,8 +235,8 @@ def draw_panel(axes, run, body, moved, colours, pixels):
         seen = normal[:, 2] * (normal * inwards).sum(axis=1) < 0
         faces, owners = triangles, cells = faces[seen], owners[seen]
     lines = body.borders(triangles, cells)
-    parts, states = run.contact.shares(body.points[faces], moved[faces]) \
-        if run.contact else (moved[:0, None], [])
+    parts, states, of_faces = run.contact.shares(body.points[faces], moved[faces]) \
+        if run.contact else (moved[:0, None], [], [])
     of_states = colours_of(states)
     if body.dim == 2:
         lines = numpy.concatenate([lines, faces])
@@ -230,13 +250,14 @@ def draw_panel(axes, run, body, moved, colours, pixels):
         numpy.linalg.norm(sides, axis=2).max(axis=1) + 1e-300)
     edges = colours.copy()
     edges[:, :3] *= 1 - 0.35 * numpy.clip((height - 4.) / 6., 0., 1.)[:, None]
-    black, nearer = [(0., 0., 0., 1.)] * len(lines), 0.02 * body.size
-    drawn = [(polygon[:, :2], fill, edge, width, polygon[:, 2].mean() + near)
-             for *layer, width, near in (
-                 (corners, colours, edges, 0.3, 0.),
-                 (moved[lines], black, black, 0.6, 1.1 * nearer),
-                 (parts, of_states, of_states, 0.8, nearer))
-             for polygon, fill, edge in zip(*layer)]
+    black = [(0., 0., 0., 1.)] * len(lines)
+    depth, near = corners[:, :, 2].mean(axis=1), 0.022 * body.size
+    drawn = [(polygon[:, :2], fill, edge, width, place)
+             for *layer, width in (
+                 (corners, colours, edges, depth, 0.3),
+                 (parts, of_states, of_states, depth[of_faces], 0.8),
+                 (moved[lines], black, black, near + moved[lines, 2].mean(axis=1), 0.6))
+             for polygon, fill, edge, place in zip(*layer)]
     if body.dim == 3:
         drawn.sort(key=lambda one: one[-1])
     polygons, fill, edges, widths, _ = zip(*drawn)
@@ -268,12 +289,12 @@ def draw_box(axes, points, panel, length):
 def draw_contact(run):
     if not run.contact or (run.contact.state == "held").all():
         return
-    height = 6.
-    if run.contact.dim == 3:
+    n, height = run.contact.dim, 6.
+    if n == 3:
         low, high = numpy.sort(numpy.ptp(run.contact.nodes, axis=0))[1:]
-        height = min(2.4 + 16. * low / high, 10.)
-    figure, both = plt.subplots(2, 1, figsize=(9, height), sharex=True)
-    (draw_line if run.contact.dim == 2 else draw_surface)(run, both)
+        height = min(3.6 + 22. * low / high, 13.)
+    figure, all_axes = plt.subplots(n, 1, figsize=(9, height), sharex=True)
+    (draw_line if n == 2 else draw_surface)(run, all_axes)
     if run.title:
         figure.suptitle(run.title.strip(), fontsize=9)
     run.save(figure, "contact")
@@ -314,22 +335,30 @@ def draw_line(run, both):
                       loc="right")
 
 
-def draw_surface(run, both):
-    """Opening and states, in the plane in which the surface is widest."""
+def draw_surface(run, all_axes):
+    """Opening, force and states, in the plane in which the surface is widest."""
     contact, length = run.contact, run.units["length"]
     wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
-    free = contact.state != "held"
-    opening = colour([both[0]], contact.at_nodes("gap"), "opening" + length)
-    for axes, of_shares, which in ((both[0], opening, slice(None)),
-                                   (both[1], colours_of(contact.state[free]), free)):
+    held = contact.state == "held"
+    triangles = contact.mesh.cells[0].data[:, [[0, 1, 2], [0, 2, 3]]]
+    for axes, name, title, shown in (
+            (all_axes[0], "gap", "opening" + length, held | True),
+            (all_axes[1], "normal_force_density", "normal force density"
+             f"{run.units['stress']} (positive: pressed, negative: held)", ~held)):
+        scale = colour([axes], contact.at_nodes(name)[shown], title, "RdBu")
+        axes.tripcolor(*contact.mesh.points[:, wide].T, contact.mesh.point_data[name],
+                       triangles=triangles[shown].reshape(-1, 3), shading="gouraud",
+                       cmap=scale.cmap, norm=scale.norm, rasterized=True)
+    for axes, shown in zip(all_axes, (held & False, held, held | True)):
         axes.add_collection(PolyCollection(
-            contact.polygons[which][:, :, wide], facecolors=of_shares,
-            edgecolors="face", linewidths=0.8, rasterized=len(free) > MOST_VECTORS))
+            contact.polygons[shown][:, :, wide], facecolors=colours_of(
+                contact.state[shown]), edgecolors="face", linewidths=0.8,
+            rasterized=len(held) > MOST_VECTORS))
         axes.grid(False)
         axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
         axes.autoscale_view()
-    both[1].set_xlabel("xyz"[wide[0]] + length)
-    run.legend(both[1], [], lw=5)
+    all_axes[2].set_xlabel("xyz"[wide[0]] + length)
+    run.legend(all_axes[2], [], lw=5)
 
 
 def draw_path(run, wanted):
@@ -340,7 +369,7 @@ def draw_path(run, wanted):
     arc = read_csv(os.path.join(run.directory, "load_path_arc.csv"))
     factor = run.factor
     largest = max((name for name in path if name.startswith("reaction_")),
-                  key=lambda name: numpy.ptp(path[name]), default="normal_force")
+                  key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
     last = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
     if factor == "factor":
         last = ["normal_force over factor", "factor over unit_load_work"]
@@ -352,15 +381,20 @@ def draw_path(run, wanted):
     turns = [0, *(numpy.nonzero(numpy.diff(rises))[0] + 1), len(rises)]
     for axes, kind in zip(all_axes.flat, kinds):
         y, _, x = kind.partition(" over ")
-        if not {x, y} <= set(path):
-            raise BadInput(f"load_path.csv has no '{kind}', but the columns "
-                           + ", ".join(path))
+        for name in y, x:
+            if name not in path:
+                near = ", ".join(difflib.get_close_matches(name, path) or ["step"])
+                raise BadInput(f"load_path.csv has no column '{name}', but {near}, "
+                               "...; its first line has them all")
+            if path[name].dtype.kind != "f" or numpy.isnan(path[name]).all():
+                raise BadInput(f"{name} of load_path.csv has no numbers here")
         if not numpy.isnan(path.get(f"global_{y}", numpy.nan)).all():
             axes.plot(path.get(f"global_{x}", path[x]), path[f"global_{y}"],
                       "--", color="0.5", label="lowest minimum")
         for begin, end in zip(turns, turns[1:]):
             axes.plot(path[x][begin:end + 1], path[y][begin:end + 1], ".-", ms=4,
-                      label="loading" if rises[begin] else "unloading")
+                      label="unloading" if begin < end and not rises[begin]
+                      else "loading")
         if arc:
             axes.plot(arc[x], arc[y], ":", color="k", lw=1, label="arc")
         axes.set(xlabel=words_for(x, run.units), ylabel=words_for(y, run.units))
@@ -398,6 +432,8 @@ def draw(directory, units="", field="von_mises", path=(), view=(), step=0):
     """All that a directory has something of, or the body and its contact
     boundary in a step. `units`: 'LENGTH, STRESS'; `view`: degrees."""
     run = Run(directory, step, units)
+    if path and (step or not run.load_path):
+        raise BadInput("--path is for load paths, and not for a --step of them")
     draw_body(run, field, view)
     draw_contact(run)
     if not step:

@@ -82,9 +82,19 @@ class Contact:
     def at_nodes(self, name):
         return self.mesh.point_data[name][self.first]
 
+    def parts(self):
+        """The states, with their parts of the boundary that is not held."""
+        p = self.polygons
+        size = numpy.linalg.norm(p[:, 1] - p[:, 0] if self.dim == 2 else numpy.cross(
+            p[:, 2] - p[:, 0], p[:, 3] - p[:, 1]), axis=1) * (self.state != "held")
+        if self.degree == 2:  # the nodes of a face have equal parts of it
+            size.reshape(-1, {2: 4, 3: 12}[self.dim])[:, ::self.dim + 1] *= self.dim
+        return {state: size[self.state == state].sum() / (size.sum() or 1.)
+                for state in numpy.unique(self.state)}
+
     def shares(self, places, moved):
-        """(polygons, states) of the shares of faces with corners at these places,
-        where they have moved, without those of nodes that are held."""
+        """(polygons, states, faces) of the shares of faces with corners at these
+        places, where they have moved."""
         step, shares = ((1, self.dim) if self.degree == 1 else
                         (self.dim + 1, self.dim * 2**(self.dim - 1)))
         corners, states = (
@@ -93,7 +103,7 @@ class Contact:
         known = {frozenset(map(tuple, face)): dict(zip(map(tuple, face), state))
                  for face, state in zip(corners, states)}
         found = [known.get(frozenset(map(tuple, face)), {}) for face in places.tolist()]
-        state = numpy.array([of.get(tuple(corner), "held") for face, of in zip(
+        state = numpy.array([of.get(tuple(corner), "") for face, of in zip(
             places.tolist(), found) for corner in face])
         after, before = (numpy.roll(moved, k, axis=1) for k in (-1, 1))
         parts = [moved, (moved + after) / 2]
@@ -101,7 +111,8 @@ class Contact:
             parts += [0 * moved + moved.mean(axis=1, keepdims=True),
                       (moved + before) / 2]
         polygons = numpy.stack(parts, axis=2).reshape(-1, len(parts), 3)
-        return polygons[state != "held"], state[state != "held"]
+        (shown,) = numpy.nonzero(state != "")
+        return polygons[shown], state[shown], shown // self.dim
 
     def pieces(self):
         """(name, [(shares, places)]) of the connected pieces of a boundary in
