@@ -34,7 +34,8 @@ namespace Debond
   evaluate_constants(std::map<std::string, std::string> expressions);
 
   /// Returns the list with the value in place of each item between commas,
-  /// semicolons and colons that is an expression of constants but no number.
+  /// semicolons and colons that is an expression of constants but no number,
+  /// and whole numbers without a point or an exponent.
   std::string
   with_values(const std::string &list, const Constants &constants);
 } // namespace Debond

@@ -70,14 +70,15 @@ namespace Debond
   void
   bind_loads(LoadParameters &loads, ParameterTable &table);
 
-  /// The section Constants and Loads/Constants, for both of which @p texts is
-  /// not the place to read, as constants are evaluated before other entries.
+  /// The section Constants, whose texts by name become @p texts, and
+  /// Loads/Constants. constants_of() has their values before other entries are
+  /// taken.
   void
   bind_constants(std::map<std::string, std::string> &texts,
                  ParameterTable                     &table);
 
-  /// Returns the values of the constants that the table has read, those of the
-  /// section Constants before others. Throws BadInput if one has none.
+  /// Returns the values of the constants that the table has read. Throws
+  /// BadInput if one has none, is there twice or has a name that none may have.
   Constants
   constants_of(const ParameterTable &table);
 
