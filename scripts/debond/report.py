@@ -75,8 +75,8 @@ def write_results(study, program):
              f"([SVG](plots/{plot.name}.svg))\n" for plot in drawn]
     page += [f"The plot {plot.name} has no points.\n" for plot in empty]
     page += [f"J of {row.case.label} is lower than J_min: there are several minima.\n"
-             for row in rows if row.minimum is not None and row.summary and
-             row.functional() < row.minimum - 1e-9 * abs(row.minimum)]
+             for row in rows if row.minimum is not None and row.functional() is not None
+             and row.functional() < row.minimum - 1e-9 * abs(row.minimum)]
     failed = [f"{case.label}: {case.status()}: "
               f"{case.summary().get('message', '')}".rstrip(": ")
               for case in study.all_cases() if case.status() not in

@@ -46,10 +46,10 @@ read(const std::string &text,
      const double       memory = 1e12)
 {
   BodyParameters parameters;
-  parameters.source = BodyParameters::Source::file;
-  parameters.file   = write(text, name);
-  parameters.size   = size;
-  parameters.memory = memory;
+  parameters.source         = BodyParameters::Source::file;
+  parameters.file           = write(text, name);
+  parameters.meshing.size   = size;
+  parameters.meshing.memory = memory;
   return make_body<dim>(parameters);
 }
 
@@ -371,7 +371,7 @@ test_geometry()
   parameters.file   = "test.geo";
   parameters.scale  = 10.;
   const auto n_on   = [&](const double size, const std::string &name) {
-    parameters.size = size;
+    parameters.meshing.size = size;
     Triangulation<2> mesh;
     const auto       body  = make_body<2>(parameters);
     const PieceNames names = body->make_mesh(mesh);
@@ -399,15 +399,15 @@ test_geometry()
             "cells left out: 18; surfaces in no group of the file: 1\n"
             "3 of 6 faces of the group bottom lie inside the body or away from "
             "it, and are left out\n");
-  parameters.size = 0.;
+  parameters.meshing.size = 0.;
   print_error([&] { make_body<3>(parameters); });
   std::ofstream("test.geo") << "SetFactory(\"OpenCASCADE\");\n"
                                "Box(1) = {0, 0, 0, 1, 1, 1};\n";
   print_error([&] { make_body<2>(parameters); });
   std::ofstream("test.geo") << "Point(1) = {0, 0,\n";
   print_error([&] { make_body<2>(parameters); });
-  parameters.file = write(square);
-  parameters.size = 1.;
+  parameters.file         = write(square);
+  parameters.meshing.size = 1.;
   print_error([&] { make_body<2>(parameters); });
   check("locale and environment are as they were",
         std::setlocale(LC_ALL, nullptr) == std::string("C.UTF-8") &&

@@ -57,6 +57,16 @@ more = study("one.prm", "--set", "Sweep 1/Values=10, 1 | 20, 2 | 30, 3")
 assert "2 of 2 cases done" in more, more
 assert all(path.stat().st_mtime_ns == time for path, time in times.items())
 
+# J_min is that from rest; a lower one is told.
+pathlib.Path("lower.prm").write_text(
+    HEAD.replace("= status", "= J_min | error | status") +
+    "  set Settings = Contact law/Bond stiffness=690\n"
+    "  set Methods = majorise minimise | automatic\nend\n")
+study("lower.prm")
+assert abs(table("output/lower")["error"][0]) < 1e-9 and table("output/lower")["error"][1] < -1.
+page = open("output/lower/index.md").read()
+assert page.count("is lower than J_min") == 1 and "method = automatic is lower" in page, page
+
 # A case that is refused leaves the others.
 pathlib.Path("two.prm").write_text(HEAD + """end
 subsection Cases
