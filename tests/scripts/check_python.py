@@ -3,8 +3,10 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 import numpy
 
@@ -127,6 +129,26 @@ kept = debond.run(SCENE, few, directory="few", check=False)
 assert kept.code == 3 and kept.summary["status"] == "iteration limit"
 assert "there is no such file" in str(thrown(2, "nothing.prm", check=False))
 assert "Cells" in str(thrown(2, SCENE, {"Mesh/Cells": "0, 1"}, ranks=2))
+
+# Numbers of numpy are numbers.
+switched = debond.run(SCENE, {**QUICK, "Mesh/Cells": numpy.array([20., 2.]),
+                              "Solver/Prove": numpy.True_, "Material/Young modulus":
+                              numpy.array(69.)}, directory="switched")
+assert switched.summary["cells"] == 160 and switched.summary["minimum"]["state"] == "global"
+
+# After an interruption there is what the program had.
+child = subprocess.Popen([sys.executable, "-c", f"""
+import debond
+debond.run({str(SCENE)!r}, {{"Mesh/Cells": (160, 16), "Solver/Method": "automatic",
+                           "Load path/Factors": "0:0.001:3"}}, "cut")
+"""], env={**os.environ, "PYTHONPATH": str(SOURCE / "scripts")}, stderr=subprocess.PIPE)
+while not os.path.exists("cut"):
+    assert child.poll() is None, child.stderr.read()
+    time.sleep(0.05)
+time.sleep(1.)
+child.send_signal(signal.SIGINT)
+assert b"KeyboardInterrupt" in child.communicate()[1]
+assert debond.Results("cut").summary["status"] == "interrupted"
 
 # The program of $DEBOND, of the source tree, and of PATH.
 tree = pathlib.Path("tree").absolute()
