@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/suggestion.h>
+#include <debond/base/text.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <tuple>
+#include <utility>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Counts the insertions, deletions, substitutions and transpositions of
+    /// neighbours that turn one word into the other (Damerau's distance in its
+    /// restricted form, in which no part is edited twice).
+    std::size_t
+    edit_distance(const std::string &s, const std::string &t)
+    {
+      // That of the first i letters of s and j of t.
+      std::vector<std::vector<std::size_t>> distance(
+        s.size() + 1, std::vector<std::size_t>(t.size() + 1));
+      for (std::size_t i = 0; i <= s.size(); ++i)
+        for (std::size_t j = 0; j <= t.size(); ++j)
+          {
+            std::size_t &d = distance[i][j] = i + j;
+            if (i == 0 || j == 0)
+              continue;
+            d = std::min({distance[i - 1][j] + 1,
+                          distance[i][j - 1] + 1,
+                          distance[i - 1][j - 1] + (s[i - 1] != t[j - 1])});
+            if (i > 1 && j > 1 && s[i - 1] == t[j - 2] && s[i - 2] == t[j - 1])
+              d = std::min(d, distance[i - 2][j - 2] + 1);
+          }
+      return distance[s.size()][t.size()];
+    }
+  } // namespace
+
+
+
+  std::string
+  suggestion(const std::string &path, const std::vector<std::string> &known)
+  {
+    if (path == "Study")
+      return "; this is a study: run scripts/study";
+    static const std::map<std::string, std::string> absent = {
+      {"friction|coulomb", "friction"},
+      {"plastic|yield|hardening", "plasticity"},
+      {"visc|creep|damping", "viscosity"},
+      {"density|\\bmass|veloc|accelerat|time step",
+       "inertia (weight is Loads/Body force)"},
+      {"(large|finite) (displ|strain|rot|def)", "large displacements"},
+      {"(tangential|shear) (stiff|streng|energ)|mode (ii|2)",
+       "bonds that shear"},
+      {"penalt", "penalty: contact is exact"},
+      {"fatigue", "fatigue"}};
+    for (const auto &[words, what] : absent)
+      if (std::regex_search(path, std::regex(words, std::regex::icase)))
+        return "; Debond has no " + what +
+               ", see 'What the model does not contain' in "
+               "doc/guide/manual.md";
+
+    const auto split = [](std::string text) {
+      boost::to_lower(text);
+      const std::size_t name = text.rfind('/') + 1; // 0 without a section
+      return std::make_pair(text.substr(0, name), text.substr(name));
+    };
+    const auto has = [](const std::string &word, const std::string &part) {
+      return part.size() > 2 && word.find(part) != std::string::npos;
+    };
+    // Other programs have other words.
+    static const std::map<std::string, std::string> synonyms = {
+      {"\\bg_?i?c\\b|toughness|critical energy", "Fracture energy"},
+      {"\\bcte\\b|/alpha$", "Thermal expansion"},
+      {"/(e|elastic\\w* modulus|stiffness)$", "Young modulus"},
+      {"/nu$", "Poisson ratio"},
+      {"gravity|/weight$", "Body force"},
+      {"symmetry", "Roller boundaries"},
+      {"cohesive", "Bond"}};
+    std::string translated = path;
+    for (const auto &[words, ours] : synonyms)
+      translated = std::regex_replace(translated,
+                                      std::regex(words, std::regex::icase),
+                                      ours);
+    const auto [section, name] = split(translated);
+    std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
+    std::vector<std::string>                                       siblings;
+    for (const std::string &other : known)
+      {
+        // Of a family the words before NAME count.
+        const bool is_family = boost::ends_with(other, " NAME");
+        const auto [its_section, its_name] =
+          split(boost::erase_last_copy(other, " NAME"));
+        const std::string word =
+          is_family ? name.substr(0, name.rfind(' ')) : name;
+        const std::size_t distance = edit_distance(word, its_name);
+        if (distance <= std::max<std::size_t>(2, word.size() / 3) ||
+            (!is_family && (has(its_name, name) || has(name, its_name))))
+          near.emplace_back(distance,
+                            edit_distance(section, its_section),
+                            other);
+        if (other.substr(0, other.rfind('/') + 1) ==
+            path.substr(0, path.rfind('/') + 1))
+          siblings.push_back(other);
+      }
+    std::sort(near.begin(), near.end());
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i)
+      names.push_back(std::get<2>(near[i]));
+    return !names.empty()   ? "; did you mean " + join(names, " or ") + "?" :
+           siblings.empty() ? "" :
+                              "; known are " + join(siblings, ", ");
+  }
+} // namespace Debond
