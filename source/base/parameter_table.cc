@@ -229,7 +229,7 @@ namespace Debond
             continue;
           if (evaluated == written && is_checked &&
               written.find_first_of("*/^(") != std::string::npos)
-            reason += "; expressions are of numbers and Constants";
+            reason += "; an expression here has numbers and Constants only";
           errors.push_back(entry.set_at + ": " + path + " = " +
                            shortened(written) + ": " + reason);
           entry.value = entry.default_value;
@@ -269,7 +269,7 @@ namespace Debond
   ParameterTable::read(std::istream &input, const std::string &file)
   {
     file_name = file;
-    std::error_code no_file; // as behind /dev/stdin
+    std::error_code no_file; // There is none behind /dev/stdin.
     ReadFile       &own =
       read_files[std::filesystem::weakly_canonical(file, no_file)];
     own.is_open                             = true;
@@ -348,7 +348,8 @@ namespace Debond
           }
         else if (!text.empty() && ++n_unread > most_unread)
           {
-            errors.push_back(at + ": nor can what follows; is this a scene?");
+            errors.push_back(
+              at + ": nor can this and what follows be read; is it a scene?");
             return;
           }
         else if (!text.empty())

@@ -43,12 +43,12 @@ namespace Debond
     std::size_t end = 0, begin;
     while (end < text.size() && static_cast<unsigned char>(text[end]) < 0x80)
       ++end;
-    // The bytes of a character that begin with the bits 10 follow others.
+    // In UTF-8 the bytes that begin with the bits 10 go on with a character.
     for (begin = end++; end < text.size() && (text[end] & 0xc0) == 0x80;)
       ++end;
     if (begin < text.size())
       return "; '" + text.substr(begin, end - begin) +
-             "' is a letter of texts, not of numbers";
+             "' is no character of numbers";
     return std::regex_search(text, std::regex("[0-9],[0-9]")) ?
              "; " + decimal_comma :
              "";

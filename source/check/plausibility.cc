@@ -147,10 +147,15 @@ namespace Debond
     if (are_all_broken)
       return {"all bonds are broken at rest: the initial gap is beyond their "
               "threshold"};
+    // Each rank has the box of its own cells.
     const auto box  = dealii::GridTools::compute_bounding_box(body);
-    double     size = box.side_length(0);
-    for (unsigned int d = 1; d < dim; ++d)
-      size = std::min(size, box.side_length(d));
+    double     size = std::numeric_limits<double>::infinity();
+    for (unsigned int d = 0; d < dim; ++d)
+      size = std::min(size,
+                      dealii::Utilities::MPI::max(box.upper_bound(d),
+                                                  body.get_communicator()) -
+                        dealii::Utilities::MPI::min(box.lower_bound(d),
+                                                    body.get_communicator()));
     if (least_threshold > size)
       return {words("bonds break beyond an opening of ",
                     least_threshold,

@@ -367,8 +367,8 @@ namespace Debond
       if (Tolerance::force_rounding * result.largest() <
           result.rounding_of_gaps)
         result.rounding.add(result.rounding_of_gaps);
-      // Nor has one whose upper part has come off, and moves without stress,
-      // at the other one.
+      // Where a part has come off and moves without stress, the other one has
+      // no forces either, but the rounding of the part that moves.
       if (const double largest = result.rounding.linfty_norm();
           result.largest() < largest)
         result.rounding.add(largest);

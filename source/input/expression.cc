@@ -119,11 +119,10 @@ namespace Debond
             dealii::FunctionParser<dim>::default_variable_names() :
             variables,
           boost::replace_all_copy(
-            boost::replace_all_copy(expressions, "||", " || "),
-            "&&",
-            " && "), // or it reads no name behind
+            boost::replace_all_copy(expressions, "||", " || "), "&&", " && "),
           all_constants);
-        // FunctionParser parses when it is evaluated first.
+        // FunctionParser parses when it is evaluated first. The blanks keep it
+        // from taking the letters behind an operator for a part of that.
         for (unsigned int component = 0; component < n_components; ++component)
           function->value(dealii::Point<dim>(), component);
         return function;
@@ -189,8 +188,8 @@ namespace Debond
               ++it;
             }
         if (expressions.size() == n_left)
-          throw EntryError(name,
-                           reason + " (no circle of constants has values)");
+          throw EntryError(
+            name, reason + " (constants may use each other, but in no circle)");
       }
     return constants;
   }

@@ -51,7 +51,8 @@ namespace Debond
                      const double         faces_in_softening_zone);
 
   /// Returns notes on bonds that are hardly meant: there are none, all are
-  /// broken at rest, or none breaks before the body has moved by its size.
+  /// broken at rest, or none breaks before the body has moved by its size. All
+  /// ranks have to call it.
   template <int dim>
   std::vector<std::string>
   bond_notes(const dealii::Triangulation<dim>    &body,
