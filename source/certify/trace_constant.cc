@@ -100,8 +100,9 @@ namespace Debond
     dealii::Triangulation<2> mesh;
     make_divided_triangle(Q, n, mesh);
     BoundaryConditions conditions;
-    conditions.contact                       = {1};
-    conditions.tangential_displacement_fixed = tangential_fixed;
+    conditions.contact = {1};
+    if (!tangential_fixed)
+      conditions.tangential_displacement = TangentialDisplacement::free;
     EquilibriumProblem<2> problem(mesh, conditions, {}, unit, Loads<2>());
     const auto           &sides = problem.mesh.contact_sides;
     // If v_tau is free, a motion along I has no energy, and one unknown is

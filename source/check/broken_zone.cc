@@ -122,6 +122,20 @@ namespace Debond
                    0. :
                    law.bond_threshold() * bonds.stretch;
         };
+        // In shear what is closed may be broken, and slide.
+        const auto gap_beyond =
+          [&](const std::array<double, dim> &coordinates) {
+            return adhesion.points().opening(face, coordinates, s) -
+                   threshold(coordinates);
+          };
+        std::array<double, dim> middle;
+        middle.fill(1. / dim);
+        if (adhesion.shears() &&
+            adhesion.points().point_at(face, middle).shears())
+          {
+            sum += face.measure * positive_part_on_pieces<dim>(gap_beyond);
+            continue;
+          }
         const auto              trace = adhesion.points().trace_on(face, s);
         std::array<double, dim> thresholds, beyond;
         unsigned int            n_without = 0;
@@ -140,14 +154,9 @@ namespace Debond
           sum += face.measure;
         else if (-least > *low)
           // Closed cracks are not open.
-          sum += face.measure *
-                 (boundary.degree == 1 && n_without % dim == 0 ?
-                    positive_part(beyond) :
-                    positive_part_on_pieces<dim>(
-                      [&](const std::array<double, dim> &coordinates) {
-                        return -adhesion.points().trace(face, coordinates, s) -
-                               threshold(coordinates);
-                      }));
+          sum += face.measure * (boundary.degree == 1 && n_without % dim == 0 ?
+                                   positive_part(beyond) :
+                                   positive_part_on_pieces<dim>(gap_beyond));
       }
     return sum;
   }
@@ -169,7 +178,6 @@ namespace Debond
     std::map<double, std::map<double, unsigned int>> grips;
     for (const auto &face : boundary.faces)
       {
-        const auto trace = adhesion.points().trace_on(face, s);
         // How far bonds are from the last kink; below 0 they hold.
         std::array<double, dim>       beyond;
         std::array<unsigned int, dim> grip;
@@ -177,9 +185,11 @@ namespace Debond
           {
             const BondScale bonds =
               adhesion.points().bonds_at(face, just_inside<dim>(k));
+            std::array<double, dim> vertex_of_face = {};
+            vertex_of_face[k]                      = 1.;
             // What has broken for good stays broken where it closes.
             beyond[k] =
-              std::max(-trace[k],
+              std::max(adhesion.points().opening(face, vertex_of_face, s),
                        -adhesion.reached_at(face, k) * bonds.stretch) -
               law.bond_threshold() * bonds.stretch;
             grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;

@@ -45,8 +45,9 @@ namespace Debond
     if (motions.empty() || nodes.empty() || !law.lets_go())
       return {};
 
-    Eigen::MatrixXd towards =
-      free_motions_of_contact(problem.unknowns()).transpose();
+    Eigen::MatrixXd towards = free_motions_of_contact(problem.unknowns())
+                                .transpose()
+                                .leftCols(nodes.size());
     // Of nodes that a rotation does not move only rounding is left.
     const double rounding =
       Tolerance::motion_off * towards.cwiseAbs().maxCoeff();

@@ -546,10 +546,12 @@ namespace Debond
         // Displacements of iterative methods may be off by so much.
         const double                 measure = side.area.norm();
         const dealii::Tensor<1, dim> normal  = side.area / measure;
-        const double                 traction =
+        const Jump<dim>              traction =
           ::Debond::traction(of.adhesion, face, coordinates, s);
-        const double trace = of.adhesion.points().trace(face, coordinates, s);
-        double       r_nu  = r * normal - traction;
+        const ContactPoint<dim> point =
+          of.adhesion.points().point_at(face, coordinates);
+        const double trace     = point.normal_displacement(s);
+        double       r_nu      = r * normal - traction.normal;
         bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           is_closed =
@@ -559,14 +561,32 @@ namespace Debond
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
         // What yields stretches the bonds, too.
-        if (trace != 0.)
-          r_nu /=
-            std::sqrt(1. + mean_square_on_face<dim> * measure * traction /
-                             (trace * cells[side.cell].bubble_energy) *
-                             (normal * (cells[side.cell].yield * normal)));
-        return of.conditions.fixes_tangential(face.id) ?
-                 r_nu * normal :
-                 r + (r_nu - r * normal) * normal;
+        const auto stretched = [&](const dealii::Tensor<1, dim> &direction,
+                                   const double                  force,
+                                   const double                  way) {
+          return way == 0. ?
+                   1. :
+                   std::sqrt(
+                     1. + mean_square_on_face<dim> * measure * force /
+                            (way * cells[side.cell].bubble_energy) *
+                            (direction * (cells[side.cell].yield * direction)));
+        };
+        r_nu /= stretched(normal, traction.normal, trace);
+        if (of.conditions.fixes_tangential(face.id))
+          return r_nu * normal;
+        // On the low side of an interface bonds pull the other way.
+        dealii::Tensor<1, dim> along = r - (r * normal) * normal;
+        if (point.shears())
+          {
+            const dealii::Tensor<1, dim> slip = point.jump(s).tangential;
+            along -=
+              (normal * face.normal > 0. ? 1. : -1.) * traction.tangential;
+            if (slip.norm() > 0.)
+              along /= stretched(slip / slip.norm(),
+                                 traction.tangential.norm(),
+                                 slip.norm());
+          }
+        return along + r_nu * normal;
       }
 
       /// r without the directions that supports hold.

@@ -118,38 +118,59 @@ namespace Debond
 
 
 
-    /// The scales of each node. @p resolved: the least force that is, of each;
-    /// @p largest: displacement of the body and force of a support.
+    /// The scales of each unknown of the contact boundary. @p forces: along
+    /// them; @p resolved: the least force that is, of each; @p largest:
+    /// displacement of the body and force of a support.
     template <int dim>
     std::vector<LawScale>
-    law_scales(const AdhesionIntegral<dim>         &adhesion,
-               const ContactBoundary<dim>          &boundary,
-               const std::vector<ContactNodeState> &nodes,
-               const VectorView                    &resolved,
-               const LawScale                      &largest)
+    law_scales(const AdhesionIntegral<dim> &adhesion,
+               const ContactBoundary<dim>  &boundary,
+               const VectorView            &forces,
+               const VectorView            &resolved,
+               const LawScale              &largest)
     {
       const AdhesiveLaw &law = adhesion.adhesive_law();
-      double largest_force   = Tolerance::contact_force * largest.force;
-      for (const ContactNodeState &node : nodes)
-        largest_force = std::max(largest_force, std::abs(node.normal_force));
+      const double       largest_force =
+        std::max(Tolerance::contact_force * largest.force,
+                 forces.size() == 0 ? 0. : forces.lpNorm<Eigen::Infinity>());
 
-      std::vector<LawScale> scales;
-      for (unsigned int i = 0; i < nodes.size(); ++i)
+      std::vector<LawScale> scales(forces.size(),
+                                   {largest.length, largest_force});
+      const auto            set = [&](const unsigned int i,
+                           const BondScale   &bonds,
+                           const double       measure) {
+        const double threshold = first_threshold(law) * bonds.stretch;
+        const double strength =
+          law.bond_strength() * bonds.energy / bonds.stretch * measure;
+        const bool has_bonds = threshold > 0. && strength > 0.;
+        LawScale  &scale     = scales[i];
+        if (has_bonds)
+          scale.force = std::min(scale.force, strength);
+        scale.force = std::max(scale.force, resolved(i));
+        if (has_bonds)
+          scale.length =
+            std::min(scale.length,
+                     threshold * std::min(1., scale.force / strength));
+      };
+      for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
         {
-          const BondScale bonds     = adhesion.points().bonds_at(i);
-          const double    threshold = first_threshold(law) * bonds.stretch;
-          const double    strength  = law.bond_strength() * bonds.energy /
-                                  bonds.stretch * boundary.nodes[i].measure;
-          const bool has_bonds = threshold > 0. && strength > 0.;
-          LawScale   scale     = {largest.length, largest_force};
-          if (has_bonds)
-            scale.force = std::min(scale.force, strength);
-          scale.force = std::max(scale.force, resolved(i));
-          if (has_bonds)
-            scale.length =
-              std::min(scale.length,
-                       threshold * std::min(1., scale.force / strength));
-          scales.push_back(scale);
+          const auto     &node  = boundary.nodes[i];
+          const BondScale bonds = adhesion.points().bonds_at(i);
+          set(i, bonds, node.measure);
+          // In shear the same opening is a larger or a smaller displacement,
+          // and it is another one of bonds that break separately.
+          BondScale shear = bonds;
+          if (bonds.shear_energy > 0.)
+            shear = {bonds.shear_energy,
+                     bonds.stretch * std::sqrt(bonds.shear_energy /
+                                               (bonds.shear * bonds.energy))};
+          else if (bonds.shear > 0.)
+            shear.stretch /= std::sqrt(bonds.shear);
+          for (const auto &tangent : node.tangents)
+            if (!tangent.is_held)
+              set(tangent.index,
+                  bonds.shear > 0. ? shear : BondScale{0., 1.},
+                  node.measure);
         }
       return scales;
     }
@@ -181,8 +202,8 @@ namespace Debond
       node.branch =
         bonds.energy == 0. ?
           BondState::free :
-          state_of(
-            std::max(least_piece, branches.index(node.s / bonds.stretch)));
+          state_of(std::max(least_piece,
+                            branches.index(-node.opening / bonds.stretch)));
       const double threshold = first_threshold(law) * bonds.stretch;
       const double no_gap =
         tolerance *
@@ -195,7 +216,9 @@ namespace Debond
       if (node.s >= -no_gap ||
           (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
-          node.state = least_piece > 0 && node.branch == BondState::broken ?
+          // What is closed may slide.
+          node.state = (least_piece > 0 || node.mode_mixity) &&
+                           node.branch == BondState::broken ?
                          BondState::broken_but_closed :
                          BondState::contact;
           return;
@@ -206,7 +229,7 @@ namespace Debond
            ++k)
         {
           const double kink = branches[k].upper * bonds.stretch;
-          if (std::abs(node.s - kink) <= tolerance * std::abs(kink))
+          if (std::abs(-node.opening - kink) <= tolerance * std::abs(kink))
             {
               node.state  = BondState::kink;
               node.branch = state_of(k - 1);
@@ -236,20 +259,23 @@ namespace Debond
 
 
     /**
-     * The distances of Verification::law_violation, one for each node. A
+     * The distances of Verification::law_violation, one for each unknown of the
+     * contact boundary, of which those from @p n_nodes on have no bound. A
      * larger delta allows more, so that bisection finds the least one. It
      * bisects the exponent, because a node next to a jump of the law is close
      * to the graph, however far its force is from what is allowed at its
      * very displacement.
      */
     template <int dim>
-    void
-    compute_violations(const AdhesionIntegral<dim>   &adhesion,
-                       const VectorView              &s,
-                       const std::vector<LawScale>   &scales,
-                       std::vector<ContactNodeState> &nodes)
+    std::vector<double>
+    violations(const AdhesionIntegral<dim> &adhesion,
+               const VectorView            &s,
+               const VectorView            &forces,
+               const std::vector<LawScale> &scales)
     {
-      const unsigned int n = static_cast<unsigned int>(nodes.size());
+      const unsigned int          n       = adhesion.n_unknowns();
+      const unsigned int          n_nodes = adhesion.n_nodes();
+      const std::vector<Interval> at_s    = adhesion.force_intervals(s, 0.);
 
       // What is needed at fixed displacements is enough. It is exactly zero
       // for a node on the graph.
@@ -258,10 +284,11 @@ namespace Debond
       for (unsigned int i = 0; i < n; ++i)
         {
           const double force_distance =
-            distance(nodes[i].normal_force, nodes[i].allowed_force);
+            distance(forces(i),
+                     unbounded_above_if(i < n_nodes && s(i) >= 0., at_s[i]));
           if (force_distance > 0.)
             upper[i] = force_distance / scales[i].force;
-          if (s(i) > 0.)
+          if (i < n_nodes && s(i) > 0.)
             upper[i] = std::max(upper[i], s(i) / scales[i].length);
           if (upper[i] > 0.)
             lower[i] = std::numeric_limits<double>::min();
@@ -281,17 +308,18 @@ namespace Debond
             adhesion.force_intervals(s, radius);
           for (unsigned int i = 0; i < n; ++i)
             {
+              const bool     is_bounded = i < n_nodes;
               const Interval allowed =
-                unbounded_above_if(s(i) >= -radius[i], intervals[i]);
+                unbounded_above_if(is_bounded && s(i) >= -radius[i],
+                                   intervals[i]);
               const bool enough =
-                s(i) <= radius[i] && distance(nodes[i].normal_force, allowed) <=
-                                       delta[i] * scales[i].force;
+                (!is_bounded || s(i) <= radius[i]) &&
+                distance(forces(i), allowed) <= delta[i] * scales[i].force;
               (enough ? upper : lower)[i] = delta[i];
             }
         }
 
-      for (unsigned int i = 0; i < n; ++i)
-        nodes[i].violation = upper[i];
+      return upper;
     }
 
 
@@ -348,12 +376,12 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const ElasticFields<dim>   &fields   = problem.fields();
       ForceScales                 result;
-      std::vector<bool>           is_normal(unknowns.n_dofs(), false);
-      for (const auto normal : unknowns.contact().normal_dofs())
-        is_normal[normal] = true;
+      std::vector<bool>           is_contact(unknowns.n_dofs(), false);
+      for (const auto dof : unknowns.contact().dofs())
+        is_contact[dof] = true;
       for (unsigned int i = 0; i < unknowns.n_dofs(); ++i)
         {
-          double &largest = is_normal[i] || unknowns.is_constrained(i) ?
+          double &largest = is_contact[i] || unknowns.is_constrained(i) ?
                               result.supported :
                               result.free;
           largest         = std::max(largest, std::abs(residual(i)));
@@ -460,6 +488,8 @@ namespace Debond
         {
           const dealii::Tensor<1, dim> force = held_forces[k] * held[k].normal;
           result.contact_reaction -= force;
+          if (held[k].is_tangential)
+            result.tangential_reaction -= force;
           if (held[k].low_support < names.size())
             result.reactions[names[held[k].low_support]] -= force;
           else
@@ -496,6 +526,9 @@ namespace Debond
           clamped(dof)    = residual(dof);
           tangential(dof) = 0.;
         }
+      const auto &dofs = unknowns.contact().dofs();
+      for (std::size_t i = normals.size(); i < dofs.size(); ++i)
+        tangential(dofs[i]) = residual(dofs[i]);
       DofVector contact = tangential;
       for (const auto normal : normals)
         contact(normal) = residual(normal);
@@ -506,11 +539,11 @@ namespace Debond
         resultant<dim>(unknowns.cartesian_forces(clamped));
       result.contact_reaction =
         resultant<dim>(unknowns.contact_forces(contact));
-      set_reactions(unknowns, clamped, result);
-      add_held_forces(unknowns, held_forces, result);
       tangential                 = unknowns.contact_forces(tangential);
       result.tangential_reaction = resultant<dim>(tangential);
       result.tangential_forces   = at_contact_nodes<dim>(tangential, normals);
+      set_reactions(unknowns, clamped, result);
+      add_held_forces(unknowns, held_forces, result);
 
       // Resultants can vanish where forces do not.
       DofVector all = clamped;
@@ -531,31 +564,63 @@ namespace Debond
 
 
 
+    /// The displacements of nodes along their tangents.
+    template <int dim>
+    std::vector<dealii::Tensor<1, dim>>
+    displacements_along(const ContactBoundary<dim> &boundary,
+                        const VectorView           &s,
+                        const double                displacement_factor)
+    {
+      std::vector<dealii::Tensor<1, dim>> result(boundary.nodes.size());
+      for (unsigned int i = 0; i < result.size(); ++i)
+        for (const auto &tangent : boundary.nodes[i].tangents)
+          result[i] +=
+            (tangent.is_held ?
+               displacement_factor *
+                 boundary.held_vertices[tangent.index].normal_displacement :
+               s(tangent.index)) *
+            tangent.direction;
+      return result;
+    }
+
+
+
     /// The displacement and the force of contact node @p i, before the law is
     /// checked.
     template <int dim>
     ContactNodeState
-    node_state(const unsigned int           i,
-               const AdhesionIntegral<dim> &adhesion,
-               const double                 s,
-               const double                 gap,
-               const double                 normal_force,
-               const Interval              &bond_forces)
+    node_state(const unsigned int            i,
+               const AdhesionIntegral<dim>  &adhesion,
+               const double                  s,
+               const dealii::Tensor<1, dim> &slip,
+               const double                  normal_force,
+               const Interval               &bond_forces)
     {
-      const AdhesiveLaw &law   = adhesion.adhesive_law();
-      const BondScale    bonds = adhesion.points().bonds_at(i);
+      const AdhesiveLaw &law           = adhesion.adhesive_law();
+      const auto        &boundary_node = adhesion.contact_boundary().nodes[i];
+      const BondScale    bonds         = adhesion.points().bonds_at(i);
       ContactNodeState   node;
-      node.s              = s;
-      node.u_nu           = s + gap;
+      node.s       = s;
+      node.opening = -s;
+      node.u_nu    = s + boundary_node.gap;
+      if (!boundary_node.tangents.empty() && bonds.shear > 0.)
+        {
+          const Jump<dim> jump   = {std::min(s, 0.), slip};
+          const double    square = jump.product(jump, bonds.shear);
+          node.mode_mixity =
+            square == 0. ? 0. : bonds.shear * slip.norm_square() / square;
+          if (bonds.shear_energy == 0.)
+            node.opening = std::sqrt(square);
+        }
       node.normal_force   = normal_force;
       node.allowed_force  = unbounded_above_if(s >= 0., bond_forces);
       node.bond_stiffness = std::max(0., law.second_derivative(0.)) *
                             bonds.energy / (bonds.stretch * bonds.stretch);
       node.bond_threshold = law.bond_threshold() * bonds.stretch;
-      node.damage =
-        bonds.energy == 0. ?
-          0. :
-          law.damage(std::min(adhesion.reached(i), s / bonds.stretch));
+      node.damage         = bonds.energy == 0. ?
+                              0. :
+                              law.damage(std::min(adhesion.reached(i),
+                                          -node.opening / bonds.stretch));
       return node;
     }
 
@@ -600,9 +665,12 @@ namespace Debond
     const ContactBoundary<dim> &boundary = contact.boundary();
     const DofVector residual = problem.fields().residual(u, factors);
 
-    const Eigen::VectorXd       s               = contact.trace(u);
-    const Eigen::VectorXd       normal_residual = contact.trace(residual);
-    const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
+    const Eigen::VectorXd       s       = contact.trace(u);
+    const Eigen::VectorXd       forces  = -contact.trace(residual);
+    const std::vector<Interval> allowed = adhesion.force_intervals(s, 0.);
+    const std::vector<dealii::Tensor<1, dim>> slips =
+      displacements_along(boundary, s, factors.displacements);
+    const std::vector<double> shear_damages = shear_damage(adhesion, s);
 
     Verification<dim> result;
     result.state_names     = state_names(adhesion.adhesive_law());
@@ -610,42 +678,50 @@ namespace Debond
     result.largest_opening = 0.;
     result.broken_zone =
       broken_zone(boundary, adhesion.adhesive_law(), adhesion, s);
-    result.without_bonds = zone_without_bonds(boundary, adhesion);
-    for (unsigned int i = 0; i < s.size(); ++i)
+    result.without_bonds       = zone_without_bonds(boundary, adhesion);
+    const unsigned int n_nodes = adhesion.n_nodes();
+    for (unsigned int i = 0; i < n_nodes; ++i)
       {
         result.largest_opening = std::max(result.largest_opening, -s(i));
         result.penetration     = std::max(result.penetration, s(i));
-        result.nodes.push_back(node_state(i,
-                                          adhesion,
-                                          s(i),
-                                          boundary.nodes[i].gap,
-                                          -normal_residual(i),
-                                          forces[i]));
+        result.nodes.push_back(
+          node_state(i, adhesion, s(i), slips[i], forces(i), allowed[i]));
+        for (const auto &tangent : boundary.nodes[i].tangents)
+          if (!tangent.is_held)
+            result.nodes[i].shear_damage = shear_damages[tangent.index];
       }
+    if (adhesion.shears())
+      result.slips = slips;
 
     const DofVector   displacement = problem.unknowns().lifted(u, factors);
     const ForceScales found = force_scales(problem, u, residual, factors);
     const std::vector<LawScale> scales =
       law_scales<dim>(adhesion,
                       boundary,
-                      result.nodes,
+                      forces,
                       (Tolerance::resolved * contact.trace(found.rounding))
                         .cwiseMax(found.resolved_beside_loads),
                       {displacement.linfty_norm(), found.supported});
-    compute_violations(adhesion, s, scales, result.nodes);
+    const std::vector<double> distances =
+      violations(adhesion, s, forces, scales);
 
     // Where all bonds that broke for good are closed again, s is rounding.
-    double largest_s = s.lpNorm<Eigen::Infinity>();
-    for (unsigned int i = 0; i < s.size(); ++i)
+    double largest_s = s.head(n_nodes).template lpNorm<Eigen::Infinity>();
+    for (unsigned int i = 0; i < n_nodes; ++i)
       largest_s =
         std::max(largest_s,
                  -adhesion.reached(i) * adhesion.points().bonds_at(i).stretch);
-    result.law_violation = 0.;
-    for (unsigned int i = 0; i < result.nodes.size(); ++i)
+    result.law_violation =
+      distances.empty() ? 0. :
+                          *std::max_element(distances.begin(), distances.end());
+    for (unsigned int i = 0; i < n_nodes; ++i)
       {
+        double &violation = result.nodes[i].violation;
+        violation         = distances[i];
+        for (const auto &tangent : boundary.nodes[i].tangents)
+          if (!tangent.is_held)
+            violation = std::max(violation, distances[tangent.index]);
         set_state(i, adhesion, scales[i], largest_s, tolerance, result);
-        result.law_violation =
-          std::max(result.law_violation, result.nodes[i].violation);
       }
 
     result.equilibrium_residual =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 
 #include <algorithm>
@@ -73,7 +74,7 @@ namespace Debond
     phi_at_zero = 0.;
     if (contact_boundary().held_vertices.empty() && broken.empty())
       return;
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_nodes());
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_unknowns());
     phi_at_zero                = value(zero);
     if (broken.empty())
       return;
@@ -134,11 +135,53 @@ namespace Debond
     // the one on the side of 0.
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(s.size());
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      if (point.shears())
+        {
+          const double stiffness =
+            point.force() / point.bonds.stretch * law.secant(stretch, reached);
+          const Jump<dim> jump = point.jump(s);
+          point.for_each_unknown([&](const unsigned int i, const auto &by) {
+            xi(i) += stiffness * by.product(jump, point.bonds.shear);
+          });
+          return;
+        }
       const double force = point.force() * law.derivative(stretch, reached);
       for (unsigned int k = 0; k < point.n_nodes; ++k)
         xi(point.index[k]) += point.shape[k] * force;
     });
     return xi;
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::add_in_all_directions(
+    const ContactPoint<dim>             &point,
+    const Jump<dim>                     &jump,
+    const double                         along,
+    const double                         across,
+    std::vector<Eigen::Triplet<double>> &entries)
+  {
+    const double shear  = point.bonds.shear;
+    const double square = jump.product(jump, shear);
+    const double more   = square > 0. ? (along - across) / square : 0.;
+    point.for_each_unknown([&](const unsigned int i, const auto &by_i) {
+      const double along_i = more * by_i.product(jump, shear);
+      point.for_each_unknown([&](const unsigned int j, const auto &by_j) {
+        // Tangents of a node are orthogonal but for rounding, and a matrix of
+        // bonds at nodes is to be diagonal.
+        const double product = by_i.product(by_j, shear);
+        const bool   is_zero =
+          std::abs(product) <=
+          8. * Tolerance::epsilon *
+            std::sqrt(by_i.product(by_i, shear) * by_j.product(by_j, shear));
+        const double entry = (is_zero ? 0. : across * product) +
+                             along_i * by_j.product(jump, shear);
+        if (entry != 0.)
+          entries.emplace_back(i, j, entry);
+      });
+    });
   }
 
 
@@ -150,9 +193,18 @@ namespace Debond
     // This is the E of the majorant 1/2 s'E s - b's of Phi: the law of each
     // point is replaced by the flattest quadratic that touches it at s and is
     // nowhere below it. It is never negative, so S + E stays definite if S is.
-    return matrix(s, [this](const double stretch, const double reached) {
+    // In directions across the jump the flattest one has the secant stiffness,
+    // and a quadratic of one curvature k lies above j_1(-l) if k is at least
+    // both: of all jumps of one length the least value is at that along the
+    // jump, where it is the one of the law itself.
+    const auto of_law = [this](const double stretch, const double reached) {
       return law.curvature(stretch, reached);
-    });
+    };
+    const auto of_all = [this](const double stretch, const double reached) {
+      return std::max(law.curvature(stretch, reached),
+                      law.secant(stretch, reached));
+    };
+    return shears() ? matrix(s, of_all, of_all) : matrix(s, of_law, of_law);
   }
 
 
@@ -164,10 +216,55 @@ namespace Debond
     // Where bonds soften this is less than curvature(), and S + Phi'' may be
     // indefinite. That is what the search along lines and the test for a local
     // minimum have to see.
-    return matrix(s, [this](const double stretch, const double reached) {
-      return law.second_derivative(stretch, reached);
-    });
+    return matrix(
+      s,
+      [this](const double stretch, const double reached) {
+        return law.second_derivative(stretch, reached);
+      },
+      [this](const double stretch, const double reached) {
+        return law.secant(stretch, reached);
+      });
   }
+
+
+
+  namespace
+  {
+    /// How far a point is from the end of its piece along @p way, a jump for
+    /// each unit of it: infinite if it does not come there.
+    template <int dim>
+    double
+    way_to_end(const ContactPoint<dim>      &point,
+               const PiecewiseEnergy::Piece &piece,
+               const Jump<dim>              &jump,
+               const Jump<dim>              &way)
+    {
+      // The square of the opening, A x^2 + 2 B x + C.
+      const double shear = point.bonds.shear;
+      const double A     = way.product(way, shear);
+      const double B     = way.product(jump, shear);
+      const double C     = jump.product(jump, shear);
+      double       first = infinity;
+      // The end beyond is come to sooner or later, the one towards rest if the
+      // least opening on the line is below it.
+      const auto square_at = [&](const double end) {
+        return end * end * point.bonds.stretch * point.bonds.stretch;
+      };
+      if (std::isfinite(piece.lower) && A > 0.)
+        {
+          const double rest = std::max(0., square_at(piece.lower) - C);
+          const double root = std::sqrt(B * B + A * rest);
+          first             = B > 0. ? rest / (B + root) : (root - B) / A;
+        }
+      if (piece.upper < 0. && B < 0.)
+        {
+          const double rest = std::max(0., C - square_at(piece.upper));
+          if (B * B >= A * rest)
+            first = std::min(first, rest / (std::sqrt(B * B - A * rest) - B));
+        }
+      return first;
+    }
+  } // namespace
 
 
 
@@ -183,7 +280,18 @@ namespace Debond
     // point.stretch(ds), but it does not move, so it is taken off again.
     double first = limit;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
-      if (point.bonds.energy > 0.)
+      if (point.shears())
+        {
+          Jump<dim> way = {point.normal_displacement(ds) - point.offset, {}};
+          for (const auto &part : point.slip)
+            way.tangential += ds(part.index) * part.direction;
+          first = std::min(first,
+                           way_to_end(point,
+                                      law.pieces().piece_at(stretch, reached),
+                                      point.jump(s),
+                                      way));
+        }
+      else if (point.bonds.energy > 0.)
         first = std::min(first,
                          law.pieces()
                            .piece_at(stretch, reached)
@@ -196,19 +304,68 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Adds the forces that bonds in shear may have at jumps that are by no
+    /// more than delta[i] from the given one, each along its own unknown i.
+    template <int dim>
+    void
+    add_allowed(const AdhesiveLaw         &law,
+                const ContactPoint<dim>   &point,
+                const Jump<dim>           &jump,
+                const double               stretch,
+                const double               reached,
+                const std::vector<double> &delta,
+                std::vector<Interval>     &forces)
+    {
+      // The force along an unknown is that of the law times the cosine of the
+      // angle to the jump, and both change with the jump.
+      const double shear = point.bonds.shear;
+      point.for_each_unknown([&](const unsigned int i, const auto &by) {
+        const double   size   = std::sqrt(by.product(by, shear));
+        const double   radius = delta[i] * size / point.bonds.stretch;
+        const Interval traction =
+          law.goldstein_interval(stretch, radius, reached);
+        const double cosine =
+          stretch == 0. || size == 0. ?
+            0. :
+            by.product(jump, shear) / (size * stretch * point.bonds.stretch);
+        const double spread = radius == 0.       ? 0. :
+                              radius >= -stretch ? 2. :
+                                                   radius / -stretch;
+        // Tractions are not positive.
+        const double low  = std::max(-1., cosine - spread);
+        const double high = std::min(1., cosine + spread);
+        forces[i].lower +=
+          point.force() * size *
+          std::min(traction.lower * high, traction.upper * high);
+        forces[i].upper += point.force() * size *
+                           std::max(traction.lower * low, traction.upper * low);
+      });
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<Interval>
   AdhesionIntegral<dim>::force_intervals(const VectorView          &s,
                                          const std::vector<double> &delta) const
   {
-    AssertDimension(delta.size(), n_nodes());
+    AssertDimension(delta.size(), n_unknowns());
 
     // This is the discrete form of (9). An equilibrium may use any traction
     // that the law allows, at each point independently of the others, so that
     // the interval of a node is the sum of theirs. Values of the shape
     // functions are not negative, which keeps lower ends below upper ends.
-    std::vector<Interval> forces(n_nodes(), Interval{0., 0.});
+    std::vector<Interval> forces(n_unknowns(), Interval{0., 0.});
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      if (point.shears())
+        {
+          add_allowed(
+            law, point, point.jump(s), stretch, reached, delta, forces);
+          return;
+        }
       for (unsigned int k = 0; k < point.n_nodes; ++k)
         {
           const unsigned int node = point.index[k];

@@ -16,7 +16,7 @@ namespace Debond
     double                 sum    = 0.;
     phi.for_each_point(s,
                        [&](const auto &point, double stretch, double reached) {
-                         if (stretch < 0. &&
+                         if (stretch < 0. && point.n_entries > 0 &&
                              (point.bonds.energy == 0. ||
                               pieces.index(std::min(reached, stretch)) + 1 ==
                                 pieces.size()))
@@ -36,7 +36,7 @@ namespace Debond
     // parabola. The stretch is not used, so that the sum depends neither on s
     // nor on what is prescribed.
     double sum = 0.;
-    phi.for_each_point(Eigen::VectorXd::Zero(phi.n_nodes()),
+    phi.for_each_point(Eigen::VectorXd::Zero(phi.n_unknowns()),
                        [&](const auto &point, double, double reached) {
                          sum += point.weight * point.bonds.energy *
                                 phi.adhesive_law().value(0., reached);
@@ -55,6 +55,20 @@ namespace Debond
     if (!forces.empty())
       phi.for_each_point(
         s, [&](const auto &point, double stretch, double reached) {
+          if (point.shears())
+            {
+              const AdhesiveLaw &law = phi.adhesive_law();
+              const double stiffness = point.force() / point.bonds.stretch *
+                                       law.secant(stretch, reached);
+              const Jump<dim> jump = point.jump(s);
+              for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
+                forces[point.index[k]] +=
+                  stiffness * point.shape[k] * jump.normal;
+              for (const auto &part : point.held_slip)
+                forces[part.index] += stiffness * point.bonds.shear *
+                                      (part.direction * jump.tangential);
+              return;
+            }
           // Entries from n_nodes on belong to held vertices, and their indices
           // count these and not the nodes.
           for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
@@ -68,7 +82,7 @@ namespace Debond
 
 
   template <int dim>
-  double
+  Jump<dim>
   traction(const AdhesionIntegral<dim>                       &phi,
            const typename AdhesionIntegral<dim>::Face        &face,
            const typename AdhesionIntegral<dim>::Barycentric &place,
@@ -76,11 +90,47 @@ namespace Debond
   {
     // Displacement and bonds are known at any place, the memory only at the
     // points of the rule. Therefore that of the nearest point is taken.
-    const BondScale bonds = phi.points().bonds_at(face, place);
-    return bonds.energy / bonds.stretch *
-           phi.adhesive_law().derivative(phi.points().trace(face, place, s) /
-                                           bonds.stretch,
-                                         phi.reached_at(face, place));
+    const ContactPoint<dim> point   = phi.points().point_at(face, place);
+    const BondScale        &bonds   = point.bonds;
+    const double            reached = phi.reached_at(face, place);
+    const double            stretch = point.stretch(s);
+    if (!point.shears())
+      return {bonds.energy / bonds.stretch *
+                phi.adhesive_law().derivative(stretch, reached),
+              {}};
+    const double stiffness = bonds.energy / (bonds.stretch * bonds.stretch) *
+                             phi.adhesive_law().secant(stretch, reached);
+    Jump<dim> result = point.jump(s);
+    result.normal *= stiffness;
+    result.tangential *= stiffness * bonds.shear;
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  shear_damage(const AdhesionIntegral<dim> &phi, const VectorView &s)
+  {
+    // The mean over the points, each with its share of the unknown.
+    std::vector<double> lost(phi.n_unknowns(), 0.), all(phi.n_unknowns(), 0.);
+    phi.for_each_point(s,
+                       [&](const auto &point, double stretch, double reached) {
+                         if (point.n_entries > 0)
+                           return;
+                         const double damage = phi.adhesive_law().damage(
+                           std::min(reached, stretch));
+                         for (const auto &part : point.slip)
+                           {
+                             const double share =
+                               point.weight * part.direction.norm();
+                             lost[part.index] += share * damage;
+                             all[part.index] += share;
+                           }
+                       });
+    for (unsigned int i = 0; i < lost.size(); ++i)
+      lost[i] = all[i] > 0. ? lost[i] / all[i] : 0.;
+    return lost;
   }
 
 
@@ -122,10 +172,15 @@ namespace Debond
     // smaller of the second derivatives on both sides, a positive definite S +
     // Phi'' means a local minimum on whichever side the bond is.
     const AdhesiveLaw &law = phi.adhesive_law();
-    return phi.matrix(s, [&](const double stretch, const double reached) {
-      return std::min(law.second_derivative((1. + part) * stretch, reached),
-                      law.second_derivative((1. - part) * stretch, reached));
-    });
+    return phi.matrix(
+      s,
+      [&](const double stretch, const double reached) {
+        return std::min(law.second_derivative((1. + part) * stretch, reached),
+                        law.second_derivative((1. - part) * stretch, reached));
+      },
+      [&](const double stretch, const double reached) {
+        return law.secant((1. + part) * stretch, reached);
+      });
   }
 
 
@@ -137,10 +192,10 @@ namespace Debond
     // Row sums of the matrix for a law with j_1'' = 1 move all of the stiffness
     // to the diagonal. This is exact for nodal quadrature, and for an s that is
     // the same at all nodes.
-    const unsigned int n = phi.n_nodes();
-    return phi.matrix(Eigen::VectorXd::Zero(n), [](const double, const double) {
-      return 1.;
-    }) * Eigen::VectorXd::Ones(n);
+    const unsigned int n   = phi.n_unknowns();
+    const auto         one = [](const double, const double) { return 1.; };
+    return phi.matrix(Eigen::VectorXd::Zero(n), one, one) *
+           Eigen::VectorXd::Ones(n);
   }
 
 
@@ -153,6 +208,8 @@ namespace Debond
   template decltype(held_forces<3>)             held_forces<3>;
   template decltype(traction<2>)                traction<2>;
   template decltype(traction<3>)                traction<3>;
+  template decltype(shear_damage<2>)            shear_damage<2>;
+  template decltype(shear_damage<3>)            shear_damage<3>;
   template decltype(is_at_drop<2>)              is_at_drop<2>;
   template decltype(is_at_drop<3>)              is_at_drop<3>;
   template decltype(least_second_derivative<2>) least_second_derivative<2>;

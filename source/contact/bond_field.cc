@@ -54,7 +54,16 @@ namespace Debond
     // j of stiffness a and threshold M becomes energy j(s / stretch) of
     // stiffness energy a / stretch^2 and threshold stretch M.
     const double stretch = bond_value<dim>(bonds, M, point, true) / M;
-    return {a_here / a * stretch * stretch, stretch};
+    const double scale   = a_here / a;
+    BondScale    result  = {scale * stretch * stretch, stretch};
+    if (shear.boundaries.count(id) > 0)
+      {
+        const double of_shear = shear.is_relative ? scale : 1.;
+        result.shear =
+          shear.stiffness ? *shear.stiffness * of_shear / scale : 1.;
+        result.shear_energy = shear.energy * of_shear;
+      }
+    return result;
   }
 
 

@@ -52,6 +52,7 @@ namespace Debond
       double    measure   = 0.;
       double    stiffness = 0.; ///< times measure, as is the energy
       double    energy    = 0.;
+      double    shear = 0., shear_energy = 0.; ///< likewise, of stiffness too
 
       void
       add(const BondScale &bonds, const double more)
@@ -59,10 +60,15 @@ namespace Debond
         if (measure == 0.)
           first = bonds;
         is_mixed = is_mixed || bonds.energy != first.energy ||
-                   bonds.stretch != first.stretch;
+                   bonds.stretch != first.stretch ||
+                   bonds.shear != first.shear ||
+                   bonds.shear_energy != first.shear_energy;
         measure += more;
-        stiffness += more * bonds.energy / (bonds.stretch * bonds.stretch);
+        const double own = bonds.energy / (bonds.stretch * bonds.stretch);
+        stiffness += more * own;
         energy += more * bonds.energy;
+        shear += more * own * bonds.shear;
+        shear_energy += more * bonds.shear_energy;
       }
 
       BondScale
@@ -73,7 +79,10 @@ namespace Debond
           return first;
         if (energy == 0.)
           return {0., 1.};
-        return {energy / measure, std::sqrt(energy / stiffness)};
+        return {energy / measure,
+                std::sqrt(energy / stiffness),
+                shear / stiffness,
+                shear_energy / measure};
       }
     };
     // Where boundaries with different bonds meet, a vertex has the bonds of
@@ -144,6 +153,7 @@ namespace Debond
                 point.offset += shape[k] * held_trace(face, k);
                 add(face.held_at(k), k);
               }
+          add_slip(face, shape, point);
 
           // A point on a vertex has the bonds of all faces around it.
           if (is_nodal() && point.n_nodes == 1)
@@ -151,7 +161,13 @@ namespace Debond
               ContactPoint<dim> &at_node = points[point.index[0]];
               point.weight += at_node.weight;
               point.bonds = bonds_at(point.index[0]);
-              at_node     = point;
+              if (!point.shears())
+                {
+                  point.slip        = at_node.slip;
+                  point.held_slip   = at_node.held_slip;
+                  point.slip_offset = at_node.slip_offset;
+                }
+              at_node = point;
               places.push_back(point.index[0]);
               continue;
             }
@@ -163,6 +179,99 @@ namespace Debond
           places.push_back(static_cast<unsigned int>(points.size()));
           points.push_back(point);
         }
+    separate_shear();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactPoints<dim>::add_slip(const Face        &face,
+                               const Trace       &shape,
+                               ContactPoint<dim> &point) const
+  {
+    // Coefficients have the tangents of their own vertex, whose normal may be
+    // the mean of several faces' normals. The rotation that takes that normal n
+    // to the face's normal N takes a tangent t into the plane of the face.
+    if (point.bonds.shear == 0.)
+      return;
+    for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+      {
+        const bool is_held = face.is_held(k);
+        if (shape[k] == 0. || (is_held && contact.held_vertices.empty()))
+          continue;
+        const auto add = [&](const auto &vertex) {
+          for (const auto &tangent : vertex.tangents)
+            {
+              const typename ContactPoint<dim>::Slip slip = {
+                tangent.index,
+                shape[k] *
+                  (tangent.direction - tangent.direction * face.normal /
+                                         (1. + vertex.normal * face.normal) *
+                                         (vertex.normal + face.normal))};
+              (tangent.is_held ? point.held_slip : point.slip).push_back(slip);
+              if (tangent.is_held)
+                point.slip_offset +=
+                  load_factor *
+                  contact.held_vertices[tangent.index].normal_displacement *
+                  slip.direction;
+            }
+        };
+        if (is_held)
+          add(contact.held_vertices[face.held_at(k)]);
+        else
+          add(contact.nodes[face.node(k)]);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactPoints<dim>::separate_shear()
+  {
+    for (std::size_t q = 0, n = points.size(); q < n; ++q)
+      if (const BondScale bonds = points[q].bonds;
+          bonds.shear_energy > 0. && points[q].shears())
+        {
+          // The law of this energy whose stiffness is that in shear.
+          ContactPoint<dim> &normal = points[q];
+          ContactPoint<dim>  shear;
+          shear.weight = normal.weight;
+          shear.bonds  = {bonds.shear_energy,
+                          bonds.stretch *
+                            std::sqrt(bonds.shear_energy /
+                                     (bonds.shear * bonds.energy)),
+                          1.};
+          std::swap(shear.slip, normal.slip);
+          std::swap(shear.held_slip, normal.held_slip);
+          std::swap(shear.slip_offset, normal.slip_offset);
+          points.push_back(shear);
+        }
+  }
+
+
+
+  template <int dim>
+  ContactPoint<dim>
+  ContactPoints<dim>::point_at(const Face &face, const Barycentric &place) const
+  {
+    const Trace       shape = bernstein(place, contact.degree);
+    ContactPoint<dim> point;
+    point.bonds = bonds_at(face, place);
+    for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+      if (face.is_held(k))
+        point.offset += shape[k] * held_trace(face, k);
+      else if (shape[k] != 0.)
+        {
+          point.index[point.n_nodes]   = face.node(k);
+          point.shape[point.n_nodes++] = shape[k];
+        }
+    point.n_entries = point.n_nodes;
+    // Those that break by themselves do not stretch others.
+    if (point.bonds.shear_energy == 0.)
+      add_slip(face, shape, point);
+    return point;
   }
 
 

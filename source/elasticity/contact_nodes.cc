@@ -30,6 +30,9 @@ namespace Debond
       /// On one of its faces u_tau = 0 holds.
       bool is_tangential_fixed = false;
 
+      /// Bonds of one of its faces shear.
+      bool is_bonded = false;
+
       std::vector<unsigned int> groups; ///< of its faces
       std::vector<unsigned int> nodes;  ///< of each group, or no_node
       std::vector<unsigned int> held;   ///< vertices of the groups without
@@ -166,23 +169,36 @@ namespace Debond
       ContactSpace<dim>
       space()
       {
-        std::vector<dealii::types::global_dof_index> boundary_normals;
+        std::vector<dealii::types::global_dof_index> dofs;
         std::vector<unsigned int>                    place(nodes.size());
         for (const unsigned int node : contact_order<dim>(nodes))
           {
             place[node] = static_cast<unsigned int>(boundary.nodes.size());
             boundary.nodes.push_back(nodes[node]);
-            boundary_normals.push_back(normal_dofs[node]);
+            dofs.push_back(normal_dofs[node]);
           }
         add_faces(place);
+        // Tangents are numbered as the vertices are, after the normals.
+        const auto number = [&](auto &of_vertices) {
+          for (auto &vertex : of_vertices)
+            for (auto &tangent : vertex.tangents)
+              if (!tangent.is_held)
+                {
+                  dofs.push_back(tangent.index);
+                  tangent.index = boundary.n_unknowns();
+                  ++boundary.n_tangents;
+                }
+        };
+        number(boundary.nodes);
+        number(boundary.held_vertices);
         if (std::all_of(boundary.held_vertices.begin(),
                         boundary.held_vertices.end(),
                         [](const auto &vertex) {
                           return vertex.normal_displacement == 0. &&
-                                 vertex.gap == 0.;
+                                 vertex.gap == 0. && vertex.tangents.empty();
                         }))
           boundary.held_vertices.clear();
-        return ContactSpace<dim>(boundary, boundary_normals);
+        return ContactSpace<dim>(boundary, dofs);
       }
 
     private:
@@ -201,6 +217,9 @@ namespace Debond
               vertex.is_tangential_fixed =
                 vertex.is_tangential_fixed ||
                 conditions.fixes_tangential(faces[f].id);
+              vertex.is_bonded =
+                vertex.is_bonded || conditions.tangential(faces[f].id) ==
+                                      TangentialDisplacement::bonded;
             }
       }
 
@@ -347,6 +366,16 @@ namespace Debond
         const std::vector<unsigned int> unknown =
           unknown_normals(vertex, normals, prescribed);
 
+        const bool shears = vertex.is_bonded && !vertex.is_tangential_fixed &&
+                            !node_supports.is_end_of_interface(index);
+        if (shears && normals.size() > 1 && prescribed.rows.size() < dim)
+          throw EntryError("Contact law/Tangential displacement",
+                           "contact sides of different normals meet at " +
+                             point_text(vertex.position) +
+                             ", where bonds cannot shear: bonded needs "
+                             "another side there, which is no contact "
+                             "boundary, or fixed on one of the two");
+
         vertex.nodes.assign(normals.size(), no_node);
         vertex.held.assign(normals.size(), 0);
         std::vector<dealii::Tensor<1, dim>> directions;
@@ -388,6 +417,73 @@ namespace Debond
           constrained.add_frame(prescribed,
                                 directions,
                                 vertex.is_tangential_fixed);
+        if (shears)
+          for (unsigned int k = 0; k < normals.size(); ++k)
+            add_tangents(prescribed,
+                         normals[k],
+                         supports,
+                         vertex.nodes[k] == no_node,
+                         vertex.nodes[k] == no_node ? vertex.held[k] :
+                                                      vertex.nodes[k]);
+      }
+
+      /// Adds the directions along the boundary in which a vertex may move, as
+      /// unknowns of a frame that has them, or is moved by supports. @p number:
+      /// that of the node or, if the normal displacement is known, of the held
+      /// vertex.
+      void
+      add_tangents(const PrescribedNode<dim>         &prescribed,
+                   const dealii::Tensor<1, dim>      &normal,
+                   const std::array<unsigned int, 2> &supports,
+                   const bool                         is_normal_known,
+                   const unsigned int                 number)
+      {
+        const auto tangents = [&]() -> auto &
+        {
+          return is_normal_known ? boundary.held_vertices[number].tangents :
+                                   nodes[number].tangents;
+        };
+        using Held          = typename ContactBoundary<dim>::HeldVertex;
+        const auto n        = static_cast<unsigned int>(prescribed.rows.size());
+        const auto add_held = [&](const dealii::Tensor<1, dim> &way) {
+          const dealii::Tensor<1, dim> along = way - (way * normal) * normal;
+          const double                 size  = along.norm();
+          if (size <= Tolerance::free_normal * way.norm())
+            return;
+          Held held = {size,
+                       0.,
+                       supports[0],
+                       along / size,
+                       prescribed.position,
+                       supports[1],
+                       true};
+          tangents().push_back(
+            {held.normal,
+             true,
+             static_cast<unsigned int>(boundary.held_vertices.size())});
+          boundary.held_vertices.push_back(held);
+        };
+        add_held(prescribed.displacement());
+        if (n == dim)
+          return;
+        // What supports prescribe has to be along the boundary or across it.
+        // Across it the frame is still to be made, as nothing is unknown there
+        // but what bonds shear.
+        const bool is_held = std::any_of(
+          prescribed.rows.begin(), prescribed.rows.end(), [&](const auto &row) {
+            return std::abs(row.direction * normal) > Tolerance::free_normal;
+          });
+        if (is_held && !is_normal_known)
+          throw SupportError(SupportError::Subject::displacement,
+                             node_supports.names()[prescribed.rows[0].support],
+                             "at " + point_text(prescribed.position) +
+                               " it is neither along the contact boundary nor "
+                               "across it, which bonds that shear need");
+        if (is_normal_known)
+          constrained.add_frame(prescribed, {}, false);
+        const auto &frame = constrained.frames().back().to_unknowns;
+        for (unsigned int d = n + (is_normal_known ? 0 : 1); d < dim; ++d)
+          tangents().push_back({frame[d], false, dim * prescribed.node + d});
       }
 
       /// @p place: of each node in the order of the boundary's.

@@ -8,20 +8,12 @@ namespace Debond
   template <int dim>
   ContactSpace<dim>::ContactSpace(
     const ContactBoundary<dim>                         &boundary,
-    const std::vector<dealii::types::global_dof_index> &normals)
+    const std::vector<dealii::types::global_dof_index> &dofs)
     : nodes_and_faces(boundary)
-    , dofs(normals)
+    , all_dofs(dofs)
+    , normals(dofs.begin(), dofs.begin() + boundary.nodes.size())
   {
-    AssertDimension(boundary.nodes.size(), normals.size());
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ContactSpace<dim>::size() const
-  {
-    return static_cast<unsigned int>(dofs.size());
+    AssertDimension(boundary.n_unknowns(), dofs.size());
   }
 
 
@@ -32,7 +24,7 @@ namespace Debond
   {
     Eigen::VectorXd s(size());
     for (unsigned int i = 0; i < size(); ++i)
-      s(i) = u(dofs[i]);
+      s(i) = u(all_dofs[i]);
     return s;
   }
 
@@ -40,10 +32,10 @@ namespace Debond
 
   template <int dim>
   void
-  ContactSpace<dim>::add_normal(const VectorView &s, DofVector &u) const
+  ContactSpace<dim>::add(const VectorView &s, DofVector &u) const
   {
     for (unsigned int i = 0; i < size(); ++i)
-      u(dofs[i]) += s(i);
+      u(all_dofs[i]) += s(i);
   }
 
 
@@ -52,8 +44,8 @@ namespace Debond
   bool
   ContactSpace<dim>::is_admissible(const DofVector &u) const
   {
-    return std::all_of(dofs.begin(),
-                       dofs.end(),
+    return std::all_of(normals.begin(),
+                       normals.end(),
                        [&u](const dealii::types::global_dof_index normal) {
                          return u(normal) <= 0.;
                        });
@@ -65,8 +57,8 @@ namespace Debond
   Eigen::VectorXd
   ContactSpace<dim>::at_rest() const
   {
-    Eigen::VectorXd s(size());
-    for (unsigned int i = 0; i < size(); ++i)
+    Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
+    for (unsigned int i = 0; i < nodes_and_faces.nodes.size(); ++i)
       s(i) = std::min(0., -nodes_and_faces.nodes[i].gap);
     return s;
   }

@@ -21,8 +21,7 @@ namespace Debond
       add_over_ranks(cartesian, unknowns.communicator());
       DofVector result = unknowns.from_cartesian(cartesian);
       if (unknowns.has_gap())
-        unknowns.contact().add_normal(
-          -unknowns.contact().trace(result).cwiseMax(0.), result);
+        unknowns.contact().enforce_bounds(result);
       return result;
     }
   } // namespace

@@ -133,15 +133,26 @@ namespace Debond
     free_motions = free_rigid_motions(held, diameter, places);
     if (free_motions.motions.empty())
       return;
-    for (unsigned int i = 0; i < contact_space.normal_dofs().size(); ++i)
-      {
-        const auto &node = contact_space.boundary().nodes[i];
-        held.push_back(
-          {node.position,
-           node.normal,
-           static_cast<unsigned int>(contact_space.normal_dofs()[i] / dim)});
-        in_body(held.back());
-      }
+    const auto hold = [&](const dealii::Point<dim>     &position,
+                          const dealii::Tensor<1, dim> &direction,
+                          const unsigned int            unknown) {
+      held.push_back(
+        {position,
+         direction,
+         static_cast<unsigned int>(contact_space.dofs()[unknown] / dim)});
+      in_body(held.back());
+    };
+    const ContactBoundary<dim> &boundary   = contact_space.boundary();
+    const auto                  hold_along = [&](const auto &vertices) {
+      for (const auto &vertex : vertices)
+        for (const auto &tangent : vertex.tangents)
+          if (!tangent.is_held)
+            hold(vertex.position, tangent.direction, tangent.index);
+    };
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      hold(boundary.nodes[i].position, boundary.nodes[i].normal, i);
+    hold_along(boundary.nodes);
+    hold_along(boundary.held_vertices);
     const std::vector<std::string> motions =
       free_rigid_motions(held, diameter, places).names;
     if (!motions.empty())

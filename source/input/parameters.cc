@@ -70,14 +70,39 @@ namespace Debond
         });
       table.bind_choice(
         "Contact law/Tangential displacement",
-        p.tangential_displacement_fixed,
-        {{"fixed", true}, {"free", false}},
-        "On the contact boundary: fixed is the paper's simplification u_tau = 0, free is sigma_tau = 0");
+        p.tangential_displacement,
+        {{"fixed", TangentialDisplacement::fixed},
+         {"free", TangentialDisplacement::free},
+         {"bonded", TangentialDisplacement::bonded}},
+        "On the contact boundary: fixed is the paper's simplification u_tau = 0, free is sigma_tau = 0, bonded is bonds that bear shear as well, those of the law at the opening sqrt(p^2 + r |t|^2), p along the normal, t along the boundary and r = Bond shear stiffness / Bond stiffness");
       table.bind_family(
         "Contact law/Tangential displacement",
         p.tangential_displacements,
-        one_of({"fixed", "free"}),
+        one_of({"fixed", "free", "bonded"}),
         "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is");
+      const auto none_or = [](const Pattern &number) {
+        return Pattern("nothing, or " + number.description(),
+                       [number](const std::string &text) {
+                         return text.empty() || number.match(text);
+                       });
+      };
+      table.bind(
+        "Contact law/Bond shear stiffness",
+        p.shear.stiffness,
+        none_or(quantity(true)),
+        "The stiffness of bonds in shear, with Tangential displacement = bonded: a number, or nothing for that along the normal. Where there are no bonds there are none in shear; the Traction factor multiplies both",
+        "force per volume");
+      table.bind_choice(
+        "Contact law/Bond failure",
+        p.shear.breaks_separately,
+        {{"common", false}, {"separate", true}},
+        "How bonded ones break: common, in all directions at once with one fracture energy, or separate, along the normal and in shear each by itself");
+      table.bind(
+        "Contact law/Shear fracture energy",
+        p.shear.energy,
+        none_or(quantity()),
+        "What it takes to break bonds in shear, with Bond failure = separate: the law in shear has the same form, with this energy and the Bond shear stiffness",
+        "energy per area");
     }
 
   } // namespace
@@ -439,6 +464,57 @@ namespace Debond
 
 
 
+    /// Checks bonds that shear, and refuses what has no meaning with them.
+    void
+    check_shear(Parameters &p, ParameterTable &table)
+    {
+      const std::string tangential = "Contact law/Tangential displacement";
+      const std::string failure    = "Contact law/Bond failure";
+      const std::string energy     = "Contact law/Shear fracture energy";
+      p.shear.is_somewhere =
+        p.tangential_displacement == TangentialDisplacement::bonded;
+      for (const auto &[unused, word] : p.tangential_displacements)
+        p.shear.is_somewhere = p.shear.is_somewhere || word == "bonded";
+      if (!p.shear.is_somewhere)
+        {
+          table.without_effect("Contact law/Bond shear stiffness, " + failure +
+                                 ", " + energy,
+                               "bonds bear no shear",
+                               tangential);
+          return;
+        }
+      if (p.shear.breaks_separately == p.shear.energy.empty())
+        table.reject(energy,
+                     "goes with Bond failure = separate, which needs it",
+                     {failure});
+      if (p.law.pieces.empty())
+        return;
+      const PiecewiseEnergy pieces(p.law.pieces);
+      refuse(
+        {{pieces[0].slope != 0.,
+          tangential,
+          "bonded needs bonds that are springs at first, these pull at "
+          "rest"},
+         {p.shear.breaks_separately && std::isinf(pieces.largest_value()),
+          failure,
+          "separate needs bonds that break"},
+         {p.load_path.arc,
+          "Load path/Arc",
+          "needs bonds along the normal alone: in shear the path of a "
+          "bond has no corners, but is curved"},
+         {p.certificate.kind != CertificateKind::none,
+          "Certificate/Kind",
+          "needs bonds along the normal alone"},
+         {p.solver.prove, "Solver/Prove", "needs bonds along the normal alone"},
+         {p.load_path.global_branch == GlobalBranch::prove,
+          "Load path/Global branch",
+          "needs bonds along the normal alone"}},
+        {tangential},
+        table);
+    }
+
+
+
     void
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
@@ -507,6 +583,7 @@ namespace Debond
     check_certificate(p, *this);
     check_degree(p, *this);
     check_softening(p, *this);
+    check_shear(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
     note_entries_without_effect(p, body, idle_constants, *this);

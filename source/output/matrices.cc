@@ -230,7 +230,7 @@ namespace Debond
     add("contact.mtx", [&scene](const std::string &path) {
       std::vector<double> rows;
       const Order         order = scene.problem().unknowns().serial_order();
-      for (const auto i : scene.problem().unknowns().contact().normal_dofs())
+      for (const auto i : scene.problem().unknowns().contact().dofs())
         rows.push_back(static_cast<double>(order[i]) + 1.);
       write_array<std::vector<double>>({rows}, path);
     });

@@ -106,6 +106,14 @@ namespace Debond
         record.line(
           "bonds " + side, "a = ", bonds.stiffness, ", M = ", bonds.threshold);
       lines("tangential", problem.tangential_displacements);
+      if (problem.shear.is_somewhere)
+        record.line("bonds in shear",
+                    problem.shear.stiffness.empty() ?
+                      "as along the normal" :
+                      "stiffness " + problem.shear.stiffness,
+                    problem.shear.breaks_separately ?
+                      ", breaking separately, energy " + problem.shear.energy :
+                      "");
     }
   } // namespace
 
@@ -126,8 +134,9 @@ namespace Debond
       static_cast<unsigned int>(scene.contact_boundary().nodes.size());
     // The paper counts the tangential displacements of the contact nodes,
     // although they are fixed: 710 on its mesh 40x4.
-    const bool is_fixed = problem.tangential_displacement_fixed &&
-                          problem.tangential_displacements.empty();
+    const bool is_fixed =
+      problem.tangential_displacement == TangentialDisplacement::fixed &&
+      problem.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
       n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
     record.add({{"scene", problem.scene},

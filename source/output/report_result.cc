@@ -383,7 +383,8 @@ namespace Debond
       report("tangential_reaction",
              "  tangential part",
              verification.tangential_reaction,
-             details && (problem.tangential_displacement_fixed ||
+             details && (problem.tangential_displacement !=
+                           TangentialDisplacement::free ||
                          !problem.tangential_displacements.empty()));
     }
 
@@ -597,7 +598,9 @@ namespace Debond
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
         record.add({{"cells", scene.n_cells()},
                     {"degrees_of_freedom", unknowns.n_free_dofs()},
-                    {"contact_nodes", unknowns.contact().size()}});
+                    {"contact_nodes",
+                     static_cast<unsigned int>(
+                       unknowns.contact().boundary().nodes.size())}});
       }
     report_status(result, record);
     if (result.coming_off)

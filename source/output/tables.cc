@@ -39,6 +39,21 @@ namespace Debond
       table.add(std::string("tangential_force_") + xyz[d],
                 verification.tangential_forces,
                 [d](const auto &force) { return force[d]; });
+    if (!verification.slips.empty())
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          table.add(std::string("slip_") + xyz[d],
+                    verification.slips,
+                    [d](const auto &slip) { return slip[d]; });
+        table.add("shear_force_density", boundary.nodes, [&](const auto &node) {
+          const auto i = &node - boundary.nodes.data();
+          return verification.tangential_forces[i].norm() / node.measure;
+        });
+        table.add("mode_mixity", nodes, [](const auto &node) {
+          return node.mode_mixity.value_or(0.);
+        });
+        table.add("shear_damage", nodes, &ContactNodeState::shear_damage);
+      }
     table.add("bond_stiffness", nodes, &ContactNodeState::bond_stiffness);
     table.add("bond_threshold", nodes, &ContactNodeState::bond_threshold);
     table.add("damage", nodes, &ContactNodeState::damage);

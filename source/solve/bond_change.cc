@@ -88,7 +88,8 @@ namespace Debond
       const Eigen::VectorXd zero      = Eigen::VectorXd::Zero(last.s.size());
       Eigen::MatrixXd       stiffness = scene.condensed.schur_complement();
       stiffness += bonds.curvature(zero);
-      ActiveSet           active(last.s.size(), 1);
+      ActiveSet active(last.s.size(), 0);
+      std::fill_n(active.begin(), bonds.n_nodes(), 1);
       const BoundQPResult at_next =
         solve_bound_qp(stiffness,
                        scene.load(next),

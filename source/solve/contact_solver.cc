@@ -70,7 +70,7 @@ namespace Debond
       // A_ii is definite even where only bonds hold the body.
       const Stage                 stage("condensation by multigrid");
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-      const auto                 &normals  = unknowns.contact().normal_dofs();
+      const auto                 &normals  = unknowns.contact().dofs();
       return Condensation(
         make_multigrid_factor(problem.distributed_matrix(),
                               eliminate_all_but(
@@ -134,9 +134,10 @@ namespace Debond
                          SolveResult            &result) override
       {
         // Coarser spaces do not know the gaps of bodies at rest, and what only
-        // bonds hold has to start with all of them.
+        // bonds hold has to start with all of them. They have no tangents
+        // either.
         if (is_by_bundle || problem.unknowns().has_gap() ||
-            free_motions.cols() > 0)
+            free_motions.cols() > 0 || scene.adhesion().shears())
           return;
         // Active sets and fronts of bonds move by few nodes a step. From
         // subspaces with half as many nodes each the finest one needs one or
@@ -290,7 +291,7 @@ namespace Debond
       {
         const ElasticUnknowns<dim> &unknowns = problem.unknowns();
         DofVector                   rest(unknowns.n_dofs());
-        unknowns.contact().add_normal(unknowns.contact().at_rest(), rest);
+        unknowns.contact().add(unknowns.contact().at_rest(), rest);
         start_from({}, rest);
       }
 
@@ -302,7 +303,7 @@ namespace Debond
         DofVector                v        = start;
         // Interpolation from a coarser mesh may go through the foundation: what
         // is above zero of s is taken away from the normal displacement alone.
-        contact.add_normal(-contact.trace(v).cwiseMax(0.), v);
+        contact.enforce_bounds(v);
         u = distribute(v,
                        unknowns.dof_handler().locally_owned_dofs(),
                        unknowns.communicator());

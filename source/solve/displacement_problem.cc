@@ -45,7 +45,7 @@ namespace Debond
     , phi(phi)
     , contact(problem)
     , contact_block(contact.block_of(problem.matrix()))
-    , rows_of_contact(A.rows_of(problem.unknowns().contact().normal_dofs()))
+    , rows_of_contact(A.rows_of(problem.unknowns().contact().dofs()))
     , cycle(multigrid_cycle)
     , u(start)
     , interruption(interruption)

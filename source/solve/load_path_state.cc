@@ -94,10 +94,10 @@ namespace Debond
                   const DofVector             &u,
                   const Verification<dim>     &verification)
   {
-    const auto        &nodes = problem.unknowns().contact().boundary().nodes;
-    Eigen::VectorXd    s(problem.unknowns().contact().size());
-    LoadPathState<dim> state   = {};
-    double             measure = 0.;
+    const auto           &nodes = problem.unknowns().contact().boundary().nodes;
+    const Eigen::VectorXd s     = problem.unknowns().contact().trace(u);
+    LoadPathState<dim>    state = {};
+    double                measure = 0.;
 
     // Columns have to be the same at all steps, so that states that the law can
     // have are listed even if no node is in them.
@@ -129,11 +129,12 @@ namespace Debond
         // Each node counts with the measure of the boundary that its bonds
         // stand for.
         const ContactNodeState &node = verification.nodes[i];
-        s(i)                         = node.s;
         measure += nodes[i].measure;
-        part(node.state <= BondState::contact ? BondState::contact :
-                                                node.branch) +=
-          nodes[i].measure;
+        // What is closed and slides is as broken as what is open.
+        const bool is_closed =
+          node.state == BondState::contact ||
+          (node.state == BondState::broken_but_closed && !node.mode_mixity);
+        part(is_closed ? BondState::contact : node.branch) += nodes[i].measure;
         state.mean_gap -= nodes[i].measure * node.s;
         state.normal_force += node.normal_force;
       }

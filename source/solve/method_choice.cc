@@ -220,7 +220,7 @@ namespace Debond
           factorisation_cost({scene.problem().matrix(),
                               unknowns.dof_handler().locally_owned_dofs(),
                               scene.ranks()},
-                             unknowns.contact().normal_dofs(),
+                             unknowns.contact().dofs(),
                              dim);
         // The factor, A in it while it is made, S and what is made of it.
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;

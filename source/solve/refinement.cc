@@ -79,7 +79,7 @@ namespace Debond
         , phi(phi)
         , solver(correction_solver)
         , interruption(interrupted_by)
-        , normals(problem.unknowns().contact().normal_dofs())
+        , normals(problem.unknowns().contact().dofs())
         , upper(problem.unknowns().contact().boundary().upper_bounds())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)

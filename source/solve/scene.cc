@@ -192,7 +192,7 @@ namespace Debond
         const ContactSpace<dim> &contact =
           elastic_problem->unknowns().contact();
         first_iterate.reinit(elastic_problem->unknowns().n_dofs());
-        contact.add_normal(contact.at_rest(), first_iterate);
+        contact.add(contact.at_rest(), first_iterate);
       }
     else
       first_iterate = read_start(file, *elastic_problem);
@@ -253,7 +253,7 @@ namespace Debond
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);
-    if (given.law.has_field())
+    if (given.law.has_field() || given.shear.is_somewhere)
       bond_field =
         make_bond_field<dim>(given, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(

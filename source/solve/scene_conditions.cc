@@ -116,18 +116,18 @@ namespace Debond
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }
-    conditions.tangential_displacement_fixed =
-      given.tangential_displacement_fixed;
-    const auto &own = given.tangential_displacements;
+    conditions.tangential_displacement = given.tangential_displacement;
+    const auto &own                    = given.tangential_displacements;
     for_contact_boundaries(
       given,
       entries_of("Contact law/Tangential displacement", own),
       conditions,
       [&](const std::string &name, const dealii::types::boundary_id id) {
-        // Only boundaries that differ from the rest of Gamma_C are exceptions.
-        if ((own.at(name) == "fixed") !=
-            conditions.tangential_displacement_fixed)
-          conditions.tangential_exceptions.insert(id);
+        const std::string &word = own.at(name);
+        conditions.own_tangential_displacements[id] =
+          word == "fixed" ? TangentialDisplacement::fixed :
+          word == "free"  ? TangentialDisplacement::free :
+                            TangentialDisplacement::bonded;
       });
     return conditions;
   }
@@ -232,11 +232,22 @@ namespace Debond
     // The scales are relative to the law's own stiffness and threshold; of laws
     // other than the paper's the traction factor takes the place of the
     // stiffness.
+    ShearBonds shear;
+    shear.is_relative = given.law.name != "winkler";
+    for (const dealii::types::boundary_id id : conditions.contact)
+      if (conditions.tangential(id) == TangentialDisplacement::bonded)
+        shear.boundaries.insert(id);
+    double number;
+    if (read_number(given.shear.stiffness, number))
+      shear.stiffness = number / law.second_derivative(0.);
+    if (read_number(given.shear.energy, number))
+      shear.energy = number / law.pieces().largest_value();
     return std::make_unique<BondField<dim>>(
-      given.law.name == "winkler" ? law.curvature(0.) : 1.,
+      shear.is_relative ? 1. : law.curvature(0.),
       law.bond_threshold(),
       Bonds{"", field(given.law.stiffness), field(given.law.threshold)},
-      boundaries);
+      boundaries,
+      shear);
   }
 
 
@@ -272,8 +283,9 @@ namespace Debond
       for (const double factor : load_factors)
         {
           const double normal = factor * vertex.normal_displacement;
-          if (normal - vertex.gap <=
-              Tolerance::rounding_of_data * (1. + std::abs(factor)) * largest)
+          if (vertex.is_tangential ||
+              normal - vertex.gap <=
+                Tolerance::rounding_of_data * (1. + std::abs(factor)) * largest)
             continue;
           if (vertex.normal_displacement == 0.)
             throw SupportError(SupportError::Subject::gap,

@@ -310,8 +310,9 @@ namespace
                       const bool tangential_fixed)
   {
     BoundaryConditions conditions;
-    conditions.contact                       = I;
-    conditions.tangential_displacement_fixed = tangential_fixed;
+    conditions.contact = I;
+    if (!tangential_fixed)
+      conditions.tangential_displacement = TangentialDisplacement::free;
     // A problem is not made with the motion along the side free.
     Supports<2> supports;
     if (!tangential_fixed)

@@ -288,9 +288,9 @@ test_frames()
     make_mesh(mesh);
     GridTools::rotate(angle, mesh);
     BoundaryConditions conditions;
-    conditions.clamped                       = {left};
-    conditions.contact                       = {bottom};
-    conditions.tangential_displacement_fixed = false;
+    conditions.clamped                 = {left};
+    conditions.contact                 = {bottom};
+    conditions.tangential_displacement = TangentialDisplacement::free;
     ElasticProblem<2> problem(mesh, conditions, {}, 2);
     Loads<2>          loads;
     loads.tractions[right] = {{field<2>([angle](const Point<2> &) {

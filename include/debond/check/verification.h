@@ -10,6 +10,7 @@
 #include <debond/elasticity/elastic_problem.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ namespace Debond
     /// and foundation.
     double s;
 
+    /// How far its bonds are opened: -s, and the displacement along the
+    /// boundary with it if they shear and break in all directions at once.
+    double opening;
+
     /// Total force of the foundation on the node along -nu, from A u - f:
     /// positive where the foundation pushes, negative where bonds pull.
     double normal_force;
@@ -61,8 +66,13 @@ namespace Debond
     double bond_stiffness;
     double bond_threshold;
 
-    /// The part of its stiffness that the bond has lost, 0 to 1.
+    /// The part of its stiffness that the bond has lost, 0 to 1, and if bonds
+    /// break separately that in shear.
     double damage;
+    double shear_damage = 0.;
+
+    /// The part of shear in what the bond has stored, if bonds shear.
+    std::optional<double> mode_mixity = {};
 
     BondState state;
 
@@ -88,7 +98,8 @@ namespace Debond
     /**
      * Largest distance to the contact law over all contact nodes: the least
      * delta for which the node's force is within delta F_i of what the law
-     * allows at displacements within delta L_i of u_nu.
+     * allows at displacements within delta L_i of u_nu. Of bonds that shear the
+     * same is asked of each component of the force.
      *
      * F_i is what a bond of the node can bear, a M (the largest of all
      * branches) times the node's measure,
@@ -143,6 +154,10 @@ namespace Debond
     /// the tangential force of the foundation on the body there, in Cartesian
     /// components.
     std::vector<dealii::Tensor<1, dim>> displacements, tangential_forces;
+
+    /// The displacements along the boundary that stretch bonds; none if bonds
+    /// do not shear.
+    std::vector<dealii::Tensor<1, dim>> slips;
 
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
     /// or that many times the rounding of one.

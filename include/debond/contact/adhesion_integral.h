@@ -18,7 +18,12 @@ namespace Debond
 
   /**
    * Phi(s) = int_{Gamma_C} j_1(s) dGamma, the energy of the bonds: a sum of the
-   * law over the ContactPoints, whose order s has.
+   * law over the ContactPoints, whose order s has. Where bonds shear it is a
+   * function of s and of the displacements t along the boundary after it, and
+   * the law is that of the opening l = sqrt(p^2 + r |t|^2), p = -s and r the
+   * ratio of the stiffnesses in shear and along the normal: j_1(-l). Such an
+   * effective opening is that of Camacho and Ortiz (Int. J. Solids Struct. 33,
+   * 1996).
    *
    * Keeps references to its arguments.
    */
@@ -35,11 +40,17 @@ namespace Debond
                      const ContactQuadrature<dim> &quadrature_rule,
                      const BondField<dim>         *bond_field = nullptr);
 
-    /// The number of components of s.
+    /// The number of nodes, whose s are the first unknowns.
     unsigned int
     n_nodes() const
     {
       return static_cast<unsigned int>(contact_boundary().nodes.size());
+    }
+
+    unsigned int
+    n_unknowns() const
+    {
+      return contact_boundary().n_unknowns();
     }
 
     const ContactBoundary<dim> &
@@ -121,16 +132,29 @@ namespace Debond
     }
 
     /// The second derivative of Phi at @p s if that of the law is @p of_law
-    /// (stretch, reached): a matrix that couples the nodes of a face, diagonal
-    /// for nodal quadrature.
-    template <typename Curvature>
+    /// (stretch, reached), and where bonds shear @p across (stretch, reached)
+    /// in directions in which they open no further: a matrix that couples the
+    /// nodes of a face, and for nodal quadrature no nodes.
+    template <typename Curvature, typename Across>
     Eigen::SparseMatrix<double>
-    matrix(const VectorView &s, const Curvature &of_law) const
+    matrix(const VectorView &s,
+           const Curvature  &of_law,
+           const Across     &across) const
     {
       std::vector<Eigen::Triplet<double>> entries;
       for_each_point(s, [&](const auto &point, double stretch, double reached) {
         const double curvature =
           point.force() / point.bonds.stretch * of_law(stretch, reached);
+        if (point.shears())
+          {
+            add_in_all_directions(point,
+                                  point.jump(s),
+                                  curvature,
+                                  point.force() / point.bonds.stretch *
+                                    across(stretch, reached),
+                                  entries);
+            return;
+          }
         if (curvature != 0.)
           for (unsigned int k = 0; k < point.n_nodes; ++k)
             for (unsigned int l = 0; l < point.n_nodes; ++l)
@@ -177,28 +201,44 @@ namespace Debond
       return law.softens();
     }
 
+    /// Returns whether bonds bear shear.
+    bool
+    shears() const
+    {
+      return n_unknowns() > n_nodes();
+    }
+
     /// Prescribed displacements stay as they are on the way.
     double
     first_change(const VectorView &s,
                  const VectorView &ds,
                  const double      limit) const override;
 
-    /// For each node the forces that the law allows: the quadrature of the
+    /// For each unknown the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
     /// the Clarke interval of Phi.
     std::vector<Interval>
     force_intervals(const VectorView &s, const double delta) const
     {
-      return force_intervals(s, std::vector<double>(n_nodes(), delta));
+      return force_intervals(s, std::vector<double>(n_unknowns(), delta));
     }
 
-    /// Returns these intervals with a radius of its own for each node, delta[i]
-    /// for the force on node i.
+    /// Returns these intervals with a radius of its own for each unknown,
+    /// delta[i] for the force along it.
     std::vector<Interval>
     force_intervals(const VectorView          &s,
                     const std::vector<double> &delta) const;
 
   private:
+    /// Adds the second derivative of a function of the opening of @p point at
+    /// a @p jump: @p along the jump and @p across it, in the product of jumps.
+    static void
+    add_in_all_directions(const ContactPoint<dim>             &point,
+                          const Jump<dim>                     &jump,
+                          const double                         along,
+                          const double                         across,
+                          std::vector<Eigen::Triplet<double>> &entries);
+
     /// Adapts what follows from the points and their memory.
     void
     update();

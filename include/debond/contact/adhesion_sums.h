@@ -33,11 +33,17 @@ namespace Debond
   /// The derivative of j_1 at a place on a face (at a kink: that of the piece
   /// on the side of 0), minus the traction of the bonds on the body.
   template <int dim>
-  double
+  Jump<dim>
   traction(const AdhesionIntegral<dim>                       &phi,
            const typename AdhesionIntegral<dim>::Face        &face,
            const typename AdhesionIntegral<dim>::Barycentric &place,
            const VectorView                                  &s);
+
+  /// For each unknown along a tangent the part of their stiffness that bonds in
+  /// shear have lost which break by themselves, 0 if there are none.
+  template <int dim>
+  std::vector<double>
+  shear_damage(const AdhesionIntegral<dim> &phi, const VectorView &s);
 
   /// Returns whether at some point the traction drops within @p part of its
   /// stretch.

@@ -10,6 +10,8 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 
 namespace Debond
@@ -20,6 +22,33 @@ namespace Debond
   {
     double energy  = 1.;
     double stretch = 1.;
+
+    /// The stiffness in shear over that along the normal: bonds have the
+    /// opening sqrt(p^2 + shear |t|^2), with p that along the normal and t the
+    /// displacement along the boundary.
+    double shear = 0.;
+
+    /// Unless it is 0, bonds in shear break by themselves, with this energy.
+    double shear_energy = 0.;
+  };
+
+
+
+  /// How bonds bear shear.
+  struct ShearBonds
+  {
+    /// The boundaries whose bonds do.
+    std::set<dealii::types::boundary_id> boundaries = {};
+
+    /// Over the stiffness of the law itself; none: as along the normal.
+    std::optional<double> stiffness = {};
+
+    /// BondScale::shear_energy.
+    double energy = 0.;
+
+    /// Both are multiplied by what the bonds of a point have of the law's
+    /// stiffness.
+    bool is_relative = false;
   };
 
 
@@ -65,11 +94,13 @@ namespace Debond
     BondField(const double                                       a,
               const double                                       M,
               const Bonds                                       &others,
-              const std::map<dealii::types::boundary_id, Bonds> &boundaries)
+              const std::map<dealii::types::boundary_id, Bonds> &boundaries,
+              const ShearBonds                                  &shear = {})
       : a(a)
       , M(M)
       , others(others)
       , boundaries(boundaries)
+      , shear(shear)
     {}
 
     /// At a point of the boundary @p id. Throws BondFieldError with the place
@@ -83,6 +114,7 @@ namespace Debond
     double                                      a, M;
     Bonds                                       others;
     std::map<dealii::types::boundary_id, Bonds> boundaries;
+    ShearBonds                                  shear;
   };
 } // namespace Debond
 

@@ -7,6 +7,7 @@
 #include <deal.II/base/types.h>
 
 #include <debond/mesh/bernstein.h>
+#include <debond/optimization/interval.h>
 
 #include <Eigen/Core>
 
@@ -26,6 +27,18 @@ namespace Debond
   template <int dim>
   struct ContactBoundary
   {
+    /// A direction along the boundary in which bonds shear: of those of a
+    /// vertex, which are orthonormal, those in which it does not stay.
+    struct Tangent
+    {
+      dealii::Tensor<1, dim> direction;
+
+      /// Whether the displacement is prescribed, and its number among
+      /// `held_vertices` then, else among all unknowns.
+      bool         is_held;
+      unsigned int index;
+    };
+
     struct Node
     {
       dealii::Point<dim> position;
@@ -39,9 +52,12 @@ namespace Debond
 
       /// The distance to the foundation of the body at rest.
       double gap = 0.;
+
+      std::vector<Tangent> tangents = {}; ///< none without bonds that shear
     };
 
-    /// A vertex (an edge) whose normal displacement is prescribed.
+    /// A vertex (an edge) whose normal displacement is prescribed, or the
+    /// displacement along one of its tangents, which is its `normal` then.
     struct HeldVertex
     {
       /// For the whole load.
@@ -58,6 +74,10 @@ namespace Debond
       /// The support of the body on the low side of an interface, if there is
       /// one.
       unsigned int low_support = dealii::numbers::invalid_unsigned_int;
+
+      bool is_tangential = false;
+
+      std::vector<Tangent> tangents = {}; ///< as of a node
     };
 
     struct Face
@@ -118,17 +138,30 @@ namespace Debond
       return n_coefficients(dim, degree);
     }
 
-    /// Returns the upper bounds of s at the nodes: the body does not enter the
-    /// foundation.
+    /// The number of unknowns that bonds and contact depend on: s of all nodes,
+    /// and after them the displacements along tangents.
+    unsigned int
+    n_unknowns() const
+    {
+      return static_cast<unsigned int>(nodes.size()) + n_tangents;
+    }
+
+    /// Returns the upper bounds of the unknowns: the body does not enter the
+    /// foundation, and may slide as far as it likes.
     Eigen::VectorXd
     upper_bounds() const
     {
-      return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes.size()));
+      Eigen::VectorXd bounds = Eigen::VectorXd::Zero(n_unknowns());
+      bounds.tail(n_tangents).setConstant(infinity);
+      return bounds;
     }
 
     /// In lexicographic order of their positions.
     std::vector<Node> nodes;
     std::vector<Face> faces;
+
+    /// The number of tangents that are not held.
+    unsigned int n_tangents = 0;
 
     /// Empty if they are all at the foundation and stay there.
     std::vector<HeldVertex> held_vertices;

@@ -7,11 +7,32 @@
 #include <debond/contact/boundary.h>
 #include <debond/contact/quadrature.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace Debond
 {
+  /// A displacement across the contact boundary, along the normal and along the
+  /// boundary.
+  template <int dim>
+  struct Jump
+  {
+    double                 normal = 0.;
+    dealii::Tensor<1, dim> tangential;
+
+    /// Returns the product in which the square of an opening is that of a jump
+    /// with itself; see BondScale::shear.
+    double
+    product(const Jump &other, const double shear) const
+    {
+      return normal * other.normal + shear * (tangential * other.tangential);
+    }
+  };
+
+
+
   /// One of the points that integrals over Gamma_C are sums over. The normal
   /// displacement there is `offset` and the sum of shape[k] s(index[k]) over
   /// the first `n_nodes` entries. The entries after them, up to `n_entries`,
@@ -28,15 +49,66 @@ namespace Debond
     double    offset = 0.; ///< the prescribed part of the displacement
     BondScale bonds;
 
-    /// The displacement in terms of the law, which is that of bonds of unit
-    /// stretch.
+    /// What a displacement along a tangent makes of that of the point, times
+    /// the value of the shape function.
+    struct Slip
+    {
+      unsigned int           index;
+      dealii::Tensor<1, dim> direction;
+    };
+
+    /// Of unknowns and of what is held, without bonds that shear empty; and the
+    /// prescribed part.
+    std::vector<Slip>      slip = {}, held_slip = {};
+    dealii::Tensor<1, dim> slip_offset;
+
+    /// Returns whether the bonds depend on more than the normal displacement.
+    bool
+    shears() const
+    {
+      return !slip.empty() || !held_slip.empty();
+    }
+
     double
-    stretch(const VectorView &s) const
+    normal_displacement(const VectorView &s) const
     {
       double sum = offset;
       for (unsigned int k = 0; k < n_nodes; ++k)
         sum += shape[k] * s(index[k]);
-      return sum / bonds.stretch;
+      return sum;
+    }
+
+    /// The displacement that stretches bonds.
+    Jump<dim>
+    jump(const VectorView &s) const
+    {
+      Jump<dim> result = {std::min(normal_displacement(s), 0.), slip_offset};
+      for (const Slip &part : slip)
+        result.tangential += s(part.index) * part.direction;
+      return result;
+    }
+
+    /// Minus the opening in terms of the law, which is that of bonds of unit
+    /// stretch.
+    double
+    stretch(const VectorView &s) const
+    {
+      if (!shears())
+        return normal_displacement(s) / bonds.stretch;
+      const Jump<dim> own = jump(s);
+      return -std::sqrt(own.product(own, bonds.shear)) / bonds.stretch;
+    }
+
+    /// Calls @p visit (unknown, derivative of the jump by it) for all unknowns
+    /// of a point whose bonds shear.
+    template <typename Visit>
+    void
+    for_each_unknown(const Visit &visit) const
+    {
+      for (unsigned int k = 0; k < n_nodes; ++k)
+        visit(index[k], Jump<dim>{shape[k], {}});
+      for (const Slip &part : slip)
+        visit(part.index, Jump<dim>{0., part.direction});
     }
 
     /// The factor of the law's derivative in forces.
@@ -52,11 +124,13 @@ namespace Debond
   /**
    * The quadrature points of the contact boundary with their weights and bonds.
    * The vector s has the nodal values (of degree 2: the coefficients) in the
-   * order of ContactBoundary::nodes; the displacements of vertices that are no
-   * nodes are prescribed, and grow with the load.
+   * order of ContactBoundary::nodes, and those along tangents after them; the
+   * displacements of vertices that are no nodes are prescribed, and grow with
+   * the load.
    *
    * With nodal quadrature the first points are the nodes in their order, one
-   * for all faces around each; the others follow face by face.
+   * for all faces around each; the others follow face by face. At the end are
+   * those of bonds in shear that break by themselves.
    *
    * Keeps references to its arguments.
    */
@@ -145,10 +219,37 @@ namespace Debond
           const Barycentric &place,
           const VectorView  &s) const;
 
+    /// A point at a place on a face with the bonds there, without a weight.
+    ContactPoint<dim>
+    point_at(const Face &face, const Barycentric &place) const;
+
+    /// How far bonds are opened at a place on a face: minus trace(), or where
+    /// they shear in all directions.
+    double
+    opening(const Face        &face,
+            const Barycentric &place,
+            const VectorView  &s) const
+    {
+      const ContactPoint<dim> point = point_at(face, place);
+      return point.shears() ? -point.bonds.stretch * point.stretch(s) :
+                              -trace(face, place, s);
+    }
+
   private:
     /// A prescribed coefficient on a face.
     double
     held_trace(const Face &face, const unsigned int k) const;
+
+    /// Adds to a point on @p face the displacements along tangents of its
+    /// coefficients, which have these @p shape functions.
+    void
+    add_slip(const Face        &face,
+             const Trace       &shape,
+             ContactPoint<dim> &point) const;
+
+    /// Where bonds in shear break by themselves they have a point of their own.
+    void
+    separate_shear();
 
     /// Makes bonds_of_nodes and bonds_of_held.
     void

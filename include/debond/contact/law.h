@@ -46,6 +46,14 @@ namespace Debond
     double
     derivative(const double s, const double reached = 0.) const;
 
+    /// The derivative at s over s, at 0 its limit, of a law that has one.
+    double
+    secant(const double s, const double reached = 0.) const
+    {
+      return s == 0. ? second_derivative(s, reached) :
+                       derivative(s, reached) / s;
+    }
+
     /// Returns the curvature of the flattest quadratic that touches j_1 at s,
     /// with this derivative, and is nowhere below it.
     double

@@ -17,15 +17,25 @@
 
 namespace Debond
 {
+  /// What holds of the displacement along the contact boundary.
+  enum class TangentialDisplacement
+  {
+    fixed, ///< the paper's simplification (7), u_tau = 0
+    free,  ///< sigma_tau = 0
+    bonded ///< bonds shear
+  };
+
+
+
   /// The boundaries where something is prescribed, by their ids.
   struct BoundaryConditions
   {
     std::set<dealii::types::boundary_id> clamped; ///< Gamma_D, u = 0
     std::set<dealii::types::boundary_id> contact; ///< Gamma_C
 
-    /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
-    /// sigma_tau = 0 there.
-    bool tangential_displacement_fixed = true;
+    /// On all of Gamma_C but the boundaries that have their own below.
+    TangentialDisplacement tangential_displacement =
+      TangentialDisplacement::fixed;
 
     /// The names that messages and reactions use.
     BoundaryNames names = {};
@@ -34,16 +44,24 @@ namespace Debond
     std::set<dealii::types::boundary_id> low_sides  = {};
     std::set<dealii::types::boundary_id> high_sides = {};
 
-    /// The contact boundaries for which the other one of the two holds.
-    std::set<dealii::types::boundary_id> tangential_exceptions = {};
+    std::map<dealii::types::boundary_id, TangentialDisplacement>
+      own_tangential_displacements = {};
+
+    TangentialDisplacement
+    tangential(const dealii::types::boundary_id id) const
+    {
+      const auto own = own_tangential_displacements.find(id);
+      return own == own_tangential_displacements.end() ?
+               tangential_displacement :
+               own->second;
+    }
 
     /// Returns whether the tangential displacement is fixed on this contact
     /// boundary.
     bool
     fixes_tangential(const dealii::types::boundary_id id) const
     {
-      return tangential_displacement_fixed !=
-             (tangential_exceptions.count(id) > 0);
+      return tangential(id) == TangentialDisplacement::fixed;
     }
   };
 

@@ -29,15 +29,15 @@ namespace Debond
 
 
 
-  /// The problem condensed onto the normal displacements of its contact nodes,
-  /// in their order, under its whole load.
+  /// The problem condensed onto the unknowns of ContactSpace, under its whole
+  /// load.
   template <int dim>
   Condensation
   condense_to_contact(const ElasticProblem<dim>   &problem,
                       const AdhesionIntegral<dim> &adhesion)
   {
     const Stage stage("factorisation");
-    const auto &normals = problem.unknowns().contact().normal_dofs();
+    const auto &normals = problem.unknowns().contact().dofs();
     return Condensation(
       {problem.matrix(),
        problem.unknowns().dof_handler().locally_owned_dofs(),
@@ -92,7 +92,7 @@ namespace Debond
 
 
 
-  /// The normal displacements of the contact nodes under the rigid motions that
+  /// The displacements s of the contact nodes under the rigid motions that
   /// only bonds and foundation hold, a column for each: S times them is zero.
   template <int dim>
   Eigen::MatrixXd

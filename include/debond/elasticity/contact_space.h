@@ -16,8 +16,10 @@ namespace Debond
   /**
    * The normal displacements s of the contact nodes, counted from where they
    * touch the foundation, within the vector of all unknowns u: s = N'u, where
-   * each node's normal displacement is an unknown of its own. Who reads or
-   * writes u at contact nodes does it here.
+   * each node's normal displacement is an unknown of its own. Where bonds shear
+   * the displacements along tangents follow them in s, see
+   * ContactBoundary::n_unknowns(). Who reads or writes u at contact nodes does
+   * it here.
    */
   template <int dim>
   class ContactSpace
@@ -25,10 +27,9 @@ namespace Debond
   public:
     ContactSpace() = default;
 
-    /// @p normals: the degrees of freedom of the normal displacements, in the
-    /// order of the nodes.
+    /// @p dofs: the degrees of freedom of s.
     ContactSpace(const ContactBoundary<dim>                         &boundary,
-                 const std::vector<dealii::types::global_dof_index> &normals);
+                 const std::vector<dealii::types::global_dof_index> &dofs);
 
     const ContactBoundary<dim> &
     boundary() const
@@ -36,15 +37,25 @@ namespace Debond
       return nodes_and_faces;
     }
 
-    /// The number of nodes.
+    /// The number of components of s.
     unsigned int
-    size() const;
+    size() const
+    {
+      return static_cast<unsigned int>(all_dofs.size());
+    }
 
     /// The degrees of freedom of s.
     const std::vector<dealii::types::global_dof_index> &
+    dofs() const
+    {
+      return all_dofs;
+    }
+
+    /// Those of the normal displacements.
+    const std::vector<dealii::types::global_dof_index> &
     normal_dofs() const
     {
-      return dofs;
+      return normals;
     }
 
     /// s = N'u.
@@ -53,14 +64,21 @@ namespace Debond
 
     /// u += N s.
     void
-    add_normal(const VectorView &s, DofVector &u) const;
+    add(const VectorView &s, DofVector &u) const;
+
+    /// Takes away from u what of s is above the bounds.
+    void
+    enforce_bounds(DofVector &u) const
+    {
+      add(-(trace(u) - nodes_and_faces.upper_bounds()).cwiseMax(0.), u);
+    }
 
     /// The unilateral constraint as bounds on degrees of freedom.
     UpperBounds
     bounds() const
     {
       const Eigen::VectorXd upper = nodes_and_faces.upper_bounds();
-      return {{dofs.begin(), dofs.end()}, {upper.begin(), upper.end()}};
+      return {{all_dofs.begin(), all_dofs.end()}, {upper.begin(), upper.end()}};
     }
 
     /// Returns whether u satisfies them.
@@ -74,7 +92,7 @@ namespace Debond
 
   private:
     ContactBoundary<dim>                         nodes_and_faces;
-    std::vector<dealii::types::global_dof_index> dofs;
+    std::vector<dealii::types::global_dof_index> all_dofs, normals;
   };
 } // namespace Debond
 

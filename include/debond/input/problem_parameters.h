@@ -4,6 +4,7 @@
 
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
+#include <debond/elasticity/boundary_conditions.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/material_parameters.h>
@@ -17,6 +18,18 @@
 
 namespace Debond
 {
+  /// Bonds in shear, where tangential displacements are bonded.
+  struct ShearParameters
+  {
+    std::string stiffness; ///< a number, or empty: as along the normal
+    bool        breaks_separately = false;
+    std::string energy; ///< a number, if they break separately
+
+    bool is_somewhere = false; ///< or all are fixed or free
+  };
+
+
+
   /// The problem whose least J is looked for: the body with its discretisation,
   /// its materials, what holds and loads it, and its bonds. Nothing about who
   /// finds it, how well and what is written.
@@ -27,12 +40,14 @@ namespace Debond
     std::shared_ptr<const BodyDescription> body;
     unsigned int                           degree = 1; ///< of displacements
     MaterialParameters                     materials;
-    std::set<std::string> clamped_boundaries            = {"left", "right"};
-    std::set<std::string> contact_boundaries            = {"bottom"};
-    bool                  tangential_displacement_fixed = true;
+    std::set<std::string>  clamped_boundaries = {"left", "right"};
+    std::set<std::string>  contact_boundaries = {"bottom"};
+    TangentialDisplacement tangential_displacement =
+      TangentialDisplacement::fixed;
 
-    /// "fixed" or "free" by the names of contact boundaries.
+    /// Their words by the names of contact boundaries.
     std::map<std::string, std::string> tangential_displacements;
+    ShearParameters                    shear;
     SupportParameters                  supports;
     LoadParameters                     loads;
     LoadPathParameters                 load_path;

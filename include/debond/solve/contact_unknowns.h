@@ -14,14 +14,14 @@
 
 namespace Debond
 {
-  /// The unknowns of the contact nodes' normal displacements s, which all ranks
-  /// have, and which of them are held.
+  /// The unknowns s of ContactSpace, which all ranks have, and which of them
+  /// are held.
   class ContactUnknowns
   {
   public:
     template <int dim>
     explicit ContactUnknowns(const ElasticProblem<dim> &problem)
-      : normals(problem.unknowns().contact().normal_dofs())
+      : dofs(problem.unknowns().contact().dofs())
       , bounds(problem.unknowns().contact().boundary().upper_bounds())
       , own(problem.unknowns().dof_handler().locally_owned_dofs())
       , ranks(problem.unknowns().communicator())
@@ -30,7 +30,7 @@ namespace Debond
     unsigned int
     size() const
     {
-      return static_cast<unsigned int>(normals.size());
+      return static_cast<unsigned int>(dofs.size());
     }
 
     /// Returns the upper bounds of s.
@@ -67,7 +67,7 @@ namespace Debond
              TruncatedMultigrid                &cycle) const;
 
   private:
-    const std::vector<dealii::types::global_dof_index> normals;
+    const std::vector<dealii::types::global_dof_index> dofs;
     const Eigen::VectorXd                              bounds;
     const dealii::IndexSet                             own;
     const MPI_Comm                                     ranks;
