@@ -183,7 +183,17 @@ namespace Debond
       {"initial_gap",
        [](const auto &node, const double) { return node.u_nu - node.s; }}};
 
-    /// Displacement, tangential force density and the numbers above.
+    /// With bonds that shear, besides.
+    const std::vector<ContactScalar> shear_scalars = {
+      {"mode_mixity",
+       [](const auto &node, const double) {
+         return node.mode_mixity.value_or(0.);
+       }},
+      {"shear_damage",
+       [](const auto &node, const double) { return node.shear_damage; }}};
+
+    /// Displacement, tangential force density and the numbers above, with bonds
+    /// that shear also the slip and their numbers.
     using ContactValues = std::vector<double>;
 
 
@@ -198,7 +208,7 @@ namespace Debond
               const unsigned int                         k)
     {
       constexpr double       nan = std::numeric_limits<double>::quiet_NaN();
-      dealii::Tensor<1, dim> u, force;
+      dealii::Tensor<1, dim> u, force, slip;
       ContactNodeState       state   = {};
       double                 measure = 1.;
       if (!face.is_held(k))
@@ -208,6 +218,8 @@ namespace Debond
           measure                 = boundary.nodes[node].measure;
           force = verification.tangential_forces[node] / measure;
           state = verification.nodes[node];
+          if (!verification.slips.empty())
+            slip = verification.slips[node];
         }
       else
         {
@@ -220,16 +232,27 @@ namespace Debond
               u       = state.u_nu * held.normal;
             }
           for (unsigned int d = 0; d < dim; ++d)
-            force[d] = nan;
+            force[d] = slip[d] = nan;
           state.normal_force = state.violation = state.damage = nan;
           state.bond_stiffness = state.bond_threshold = nan;
+          state.shear_damage                          = nan;
+          state.mode_mixity                           = nan;
         }
       ContactValues values;
-      for (const dealii::Tensor<1, dim> &vector : {u, force})
+      const auto    add = [&values](const dealii::Tensor<1, dim> &vector) {
         for (unsigned int d = 0; d < 3; ++d)
           values.push_back(d < dim ? vector[d] : 0.);
+      };
+      add(u);
+      add(force);
       for (const ContactScalar &scalar : contact_scalars)
         values.push_back(scalar.value(state, measure));
+      if (!verification.slips.empty())
+        {
+          add(slip);
+          for (const ContactScalar &scalar : shear_scalars)
+            values.push_back(scalar.value(state, measure));
+        }
       return values;
     }
 
@@ -252,8 +275,10 @@ namespace Debond
         return values;
       const ContactValues a = of(simplex_edges[k - dim][0]),
                           b = of(simplex_edges[k - dim][1]);
+      const std::size_t n   = 6 + contact_scalars.size();
       for (unsigned int c = 0; c < values.size(); ++c)
-        if (c < 3 || (c >= 6 && contact_scalars[c - 6].is_displacement))
+        if (c < 3 || (c >= n && c < n + 3) ||
+            (c >= 6 && c < n && contact_scalars[c - 6].is_displacement))
           values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
       return values;
     }
@@ -367,6 +392,12 @@ namespace Debond
     grid.at_points = {{"displacement", 3}, {"tangential_force_density", 3}};
     for (const ContactScalar &scalar : contact_scalars)
       grid.at_points.push_back({scalar.name});
+    if (!verification.slips.empty())
+      {
+        grid.at_points.push_back({"slip", 3});
+        for (const ContactScalar &scalar : shear_scalars)
+          grid.at_points.push_back({scalar.name});
+      }
     grid.in_cells = {{"bond_state"}};
     for (const auto &[name, unused] : more)
       grid.in_cells.push_back({name});

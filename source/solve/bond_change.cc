@@ -4,6 +4,8 @@
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/bond_change.h>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 
 namespace Debond
@@ -105,10 +107,10 @@ namespace Debond
 
 
 
-    /// The first change where bonds are at quadrature points between nodes. On
-    /// the way to it all bonds are linear springs, which S + E contains; nodes
-    /// come into contact and leave it, and each straight piece of the way is
-    /// searched for a point that reaches a kink.
+    /// The first change where bonds are at quadrature points between nodes, or
+    /// shear. On the way to it all bonds are linear springs, which S + E
+    /// contains; nodes come into contact and leave it, and each straight piece
+    /// of the way is searched for a point that reaches a kink.
     template <int dim>
     std::optional<double>
     change_between_nodes(const CondensedScene<dim>   &scene,
@@ -126,16 +128,33 @@ namespace Debond
       // path itself has no law and only contact makes its breakpoints.
       const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
       problem.load += springs * last.s - bonds.subgradient(last.s);
-      StationaryPath path({stiffness,
-                           problem.load,
-                           problem.slope,
+      // Displacements along tangents have no bound and follow from the others
+      // at each t.
+      const Eigen::Index    n = bonds.n_nodes(), m = last.s.size() - n;
+      const Eigen::MatrixXd to_tangents = stiffness.topRightCorner(n, m);
+      const Eigen::LLT<Eigen::MatrixXd> of_tangents(
+        stiffness.bottomRightCorner(m, m));
+      const Eigen::MatrixXd by_normals =
+        of_tangents.solve(to_tangents.transpose());
+      const Eigen::VectorXd by_load  = of_tangents.solve(problem.load.tail(m));
+      const Eigen::VectorXd by_slope = of_tangents.solve(problem.slope.tail(m));
+      const Eigen::MatrixXd S =
+        stiffness.topLeftCorner(n, n) - to_tangents * by_normals;
+      StationaryPath path({S,
+                           problem.load.head(n) - to_tangents * by_load,
+                           problem.slope.head(n) - to_tangents * by_slope,
                            no_law,
-                           {static_cast<std::size_t>(last.s.size()),
-                            {0., 1., 0}},
+                           {static_cast<std::size_t>(n), {0., 1., 0}},
                            true},
-                          last.s,
+                          last.s.head(n),
                           0.);
-      Event          event = Event::contact;
+      const auto     point = [&]() {
+        Eigen::VectorXd s(last.s.size());
+        s << path.point(),
+          by_load + path.t() * by_slope - by_normals * path.point();
+        return s;
+      };
+      Event event = Event::contact;
       // Contact that comes and goes more than twice a node goes round in a
       // circle by rounding; then nothing is known.
       for (unsigned int k = 0;
@@ -143,13 +162,12 @@ namespace Debond
            !interruption.requested();
            ++k)
         {
-          const Eigen::VectorXd before = path.point();
+          const Eigen::VectorXd before = point();
           const double          t      = path.t();
           event                        = path.advance(0., 1.);
           if (event != Event::contact && event != Event::end)
             return {};
-          const double part =
-            bonds.first_change(before, path.point() - before, 1.);
+          const double part = bonds.first_change(before, point() - before, 1.);
           if (part < 1.)
             return factor_between(last.factors,
                                   next,
@@ -187,7 +205,7 @@ namespace Debond
       load_path.displacement_factors.empty() && load_path.dead_loads.empty();
     const bool is_at_rest =
       !has_slope && last.s.isZero(0.) && scene.load(last.factors).isZero(0.);
-    if (!bonds.points().is_nodal())
+    if (!bonds.points().is_nodal() || bonds.shears())
       {
         // Displacements that are prescribed on the contact boundary change the
         // springs' forces with the factor, so that the change is not known.

@@ -451,7 +451,8 @@ namespace Debond
     result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = wants_search(parameters);
     // A J without adhesion is convex, and its minimum is the only one.
-    if (result.kind == MinimumKind::global || !(searches || parameters.prove))
+    if (result.kind == MinimumKind::global || adhesion.shears() ||
+        !(searches || parameters.prove))
       return result;
 
     // The search comes first: a good upper value lets branch and bound discard
