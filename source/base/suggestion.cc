@@ -53,8 +53,6 @@ namespace Debond
       {"density|\\bmass|veloc|accelerat|time step",
        "inertia (weight is Loads/Body force)"},
       {"(large|finite) (displ|strain|rot|def)", "large displacements"},
-      {"(tangential|shear) (stiff|streng|energ)|mode (ii|2)",
-       "bonds that shear"},
       {"penalt", "penalty: contact is exact"},
       {"fatigue", "fatigue"}};
     for (const auto &[words, what] : absent)
@@ -79,6 +77,8 @@ namespace Debond
       {"/nu$", "Poisson ratio"},
       {"gravity|/weight$", "Body force"},
       {"symmetry", "Roller boundaries"},
+      {"tangential stiffness", "Bond shear stiffness"},
+      {"mode (ii|2) energy|\\bg_?ii_?c\\b", "Shear fracture energy"},
       {"cohesive", "Bond"}};
     std::string translated = path;
     for (const auto &[words, ours] : synonyms)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace Debond
 {
@@ -42,10 +43,47 @@ namespace Debond
     // The memory of a point is the least stretch that it has ever had, so it
     // only falls, and a second call with the same s changes nothing. Where
     // there is no memory yet, reached is 0, which no stretch at s <= 0 exceeds.
-    BondMemory memory;
-    for_each_point(s, [&](const auto &, double stretch, double reached) {
-      memory.push_back(std::min(reached, stretch));
+    BondMemory memory = broken;
+    memory.reached.clear();
+    const bool has_mode = contact_points.toughness_by_mode() != nullptr;
+    if (has_mode && memory.taken.empty())
+      {
+        const std::size_t n = contact_points.list().size();
+        memory.toughness.assign(n, 1.);
+        memory.mixity.assign(n, 0.);
+        memory.taken.assign(n, 0.);
+      }
+    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      const std::size_t q   = memory.reached.size();
+      const double      now = std::min(reached, stretch);
+      memory.reached.push_back(now);
+      if (!has_mode)
+        return;
+      // What the bonds take in this step they take with the energy that they
+      // have in it.
+      memory.taken[q] += point.weight * point.bonds.energy *
+                         (law.value(0., now) - law.value(0., reached));
+      const Jump<dim> jump   = point.jump(s);
+      const double    square = jump.product(jump, point.bonds.shear);
+      if (square > 0.)
+        memory.mixity[q] =
+          point.bonds.shear * jump.tangential.norm_square() / square;
     });
+    set_memory(memory);
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::freeze_mode()
+  {
+    const auto *const toughness = contact_points.toughness_by_mode();
+    if (toughness == nullptr || broken.mixity.empty())
+      return;
+    BondMemory memory = broken;
+    for (std::size_t q = 0; q < memory.mixity.size(); ++q)
+      memory.toughness[q] = (*toughness)(memory.mixity[q]);
     set_memory(memory);
   }
 
@@ -58,6 +96,7 @@ namespace Debond
     // The sums at s = 0 contain what bonds have dissipated, so they follow the
     // memory.
     broken = memory;
+    contact_points.set_toughness(broken.toughness);
     update();
   }
 
@@ -83,7 +122,7 @@ namespace Debond
     reached_of_nodes.assign(n_nodes(), -std::numeric_limits<double>::max());
     for (const Face &face : contact_boundary().faces)
       {
-        const auto memory = contact_points.coefficients(face, broken);
+        const auto memory = contact_points.coefficients(face, broken.reached);
         for (unsigned int k = 0; k < contact_boundary().n_face_nodes(); ++k)
           if (!face.is_held(k))
             {
@@ -104,7 +143,8 @@ namespace Debond
       return 0.;
     if (!face.is_held(vertex))
       return reached(face.nodes[vertex]);
-    return std::min(contact_points.coefficients(face, broken)[vertex], 0.);
+    return std::min(contact_points.coefficients(face, broken.reached)[vertex],
+                    0.);
   }
 
 
@@ -120,6 +160,39 @@ namespace Debond
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       sum += point.weight * point.bonds.energy * law.value(stretch, reached);
     });
+    // What they have taken was with other energies than they have now.
+    if (!broken.taken.empty())
+      sum += dissipated_energy() - energy_at_rest();
+    return sum;
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::dissipated_energy() const
+  {
+    return broken.taken.empty() ?
+             energy_at_rest() :
+             std::accumulate(broken.taken.begin(), broken.taken.end(), 0.);
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::energy_at_rest() const
+  {
+    // The value of the law at 0 is what does not come back when bonds are
+    // released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
+    // parabola. The stretch is not used, so that the sum depends neither on s
+    // nor on what is prescribed.
+    double sum = 0.;
+    for_each_point(Eigen::VectorXd::Zero(n_unknowns()),
+                   [&](const auto &point, double, double reached) {
+                     sum += point.weight * point.bonds.energy *
+                            law.value(0., reached);
+                   });
     return sum;
   }
 

@@ -28,25 +28,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  dissipated_energy(const AdhesionIntegral<dim> &phi)
-  {
-    // The value of the law at 0 is what does not come back when bonds are
-    // released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
-    // parabola. The stretch is not used, so that the sum depends neither on s
-    // nor on what is prescribed.
-    double sum = 0.;
-    phi.for_each_point(Eigen::VectorXd::Zero(phi.n_unknowns()),
-                       [&](const auto &point, double, double reached) {
-                         sum += point.weight * point.bonds.energy *
-                                phi.adhesive_law().value(0., reached);
-                       });
-    return sum;
-  }
-
-
-
-  template <int dim>
   std::vector<double>
   held_forces(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
@@ -202,8 +183,6 @@ namespace Debond
 
   template decltype(open_measure<2>)            open_measure<2>;
   template decltype(open_measure<3>)            open_measure<3>;
-  template decltype(dissipated_energy<2>)       dissipated_energy<2>;
-  template decltype(dissipated_energy<3>)       dissipated_energy<3>;
   template decltype(held_forces<2>)             held_forces<2>;
   template decltype(held_forces<3>)             held_forces<3>;
   template decltype(traction<2>)                traction<2>;

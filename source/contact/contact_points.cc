@@ -39,6 +39,37 @@ namespace Debond
 
   template <int dim>
   void
+  ContactPoints<dim>::set_toughness(const std::vector<double> &by_point)
+  {
+    if (toughness == by_point)
+      return;
+    toughness = by_point;
+    bonds_of_nodes.clear();
+    bonds_of_held.clear();
+    collect_bonds();
+    collect_points();
+    // Between points a node has the bonds of the next one.
+    for (const Face &face : contact.faces)
+      for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+        if (!face.is_held(k))
+          {
+            Barycentric place = {};
+            if (k < dim)
+              place[k] = 1.;
+            else
+              for (const unsigned int end : simplex_edges[k - dim])
+                place[end] = 0.5;
+            BondScale own =
+              field->at(contact.nodes[face.node(k)].position, face.id);
+            own.toughen(toughness[nearest(face, place)]);
+            bonds_of_nodes[face.node(k)] = own;
+          }
+  }
+
+
+
+  template <int dim>
+  void
   ContactPoints<dim>::collect_bonds()
   {
     if (field == nullptr)
@@ -180,6 +211,8 @@ namespace Debond
           points.push_back(point);
         }
     separate_shear();
+    for (std::size_t q = 0; q < toughness.size(); ++q)
+      points[q].bonds.toughen(toughness[q]);
   }
 
 
@@ -310,7 +343,10 @@ namespace Debond
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
       position += place[k] * face.vertices[k];
-    return bonds_at(position, face.id);
+    BondScale bonds = bonds_at(position, face.id);
+    if (!toughness.empty())
+      bonds.toughen(toughness[nearest(face, place)]);
+    return bonds;
   }
 
 

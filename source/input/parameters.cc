@@ -101,8 +101,35 @@ namespace Debond
         "Contact law/Shear fracture energy",
         p.shear.energy,
         none_or(quantity()),
-        "What it takes to break bonds in shear, with Bond failure = separate: the law in shear has the same form, with this energy and the Bond shear stiffness",
+        "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy and the Bond shear stiffness, so that its strength is the one that follows from these",
         "energy per area");
+      const auto parse_mode = [](const std::string &text, double &exponent) {
+        using MixedMode = ShearParameters::MixedMode;
+        for (const auto &[name, mode] :
+             {std::pair<std::string, MixedMode>{"benzeggagh-kenane ",
+                                                MixedMode::benzeggagh_kenane},
+              {"power law ", MixedMode::power_law}})
+          if (boost::starts_with(text, name) &&
+              read_number(text.substr(name.size()), exponent) && exponent > 0.)
+            return std::make_optional(mode);
+        return text == "none" ? std::make_optional(MixedMode::none) :
+                                std::nullopt;
+      };
+      table.declare(
+        "Contact law/Mixed mode",
+        p.shear.mixed_mode_text,
+        Pattern("none, benzeggagh-kenane ETA or power law ALPHA, with a number "
+                "> 0",
+                [parse_mode](const std::string &text) {
+                  double unused;
+                  return parse_mode(text, unused).has_value();
+                }),
+        "How the energy that breaks bonds in all directions at once depends on the part m of shear in what they store, between Fracture energy G_I and Shear fracture energy G_II: G_I + (G_II - G_I) m^ETA, or ((1 - m)^ALPHA / G_I^ALPHA + m^ALPHA / G_II^ALPHA)^(-1/ALPHA). Such bonds have no energy to minimise; along a load path each step has one with m of the step before",
+        "none",
+        [&p, parse_mode](const std::string &text) {
+          p.shear.mixed_mode      = *parse_mode(text, p.shear.exponent);
+          p.shear.mixed_mode_text = text;
+        });
     }
 
   } // namespace
@@ -471,6 +498,7 @@ namespace Debond
       const std::string tangential = "Contact law/Tangential displacement";
       const std::string failure    = "Contact law/Bond failure";
       const std::string energy     = "Contact law/Shear fracture energy";
+      const std::string mode       = "Contact law/Mixed mode";
       p.shear.is_somewhere =
         p.tangential_displacement == TangentialDisplacement::bonded;
       for (const auto &[unused, word] : p.tangential_displacements)
@@ -478,15 +506,18 @@ namespace Debond
       if (!p.shear.is_somewhere)
         {
           table.without_effect("Contact law/Bond shear stiffness, " + failure +
-                                 ", " + energy,
+                                 ", " + energy + ", " + mode,
                                "bonds bear no shear",
                                tangential);
           return;
         }
-      if (p.shear.breaks_separately == p.shear.energy.empty())
+      const bool has_mode =
+        p.shear.mixed_mode != ShearParameters::MixedMode::none;
+      if ((p.shear.breaks_separately || has_mode) == p.shear.energy.empty())
         table.reject(energy,
-                     "goes with Bond failure = separate, which needs it",
-                     {failure});
+                     "goes with Bond failure = separate or a Mixed mode, which "
+                     "need it",
+                     {failure, mode});
       if (p.law.pieces.empty())
         return;
       const PiecewiseEnergy pieces(p.law.pieces);
@@ -498,6 +529,16 @@ namespace Debond
          {p.shear.breaks_separately && std::isinf(pieces.largest_value()),
           failure,
           "separate needs bonds that break"},
+         {has_mode && std::isinf(pieces.largest_value()),
+          mode,
+          "needs bonds that break"},
+         {has_mode && p.shear.breaks_separately,
+          mode,
+          "is for Bond failure = common"},
+         {has_mode && (p.load_path.factors.empty() || p.load_path.bonds_heal),
+          mode,
+          "has no energy to minimise but step by step: it needs a load "
+          "path with Bonds heal = false"},
          {p.load_path.arc,
           "Load path/Arc",
           "needs bonds along the normal alone: in shear the path of a "

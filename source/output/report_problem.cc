@@ -113,7 +113,10 @@ namespace Debond
                       "stiffness " + problem.shear.stiffness,
                     problem.shear.breaks_separately ?
                       ", breaking separately, energy " + problem.shear.energy :
-                      "");
+                    problem.shear.energy.empty() ?
+                      "" :
+                      ", energy " + problem.shear.energy + ", " +
+                        problem.shear.mixed_mode_text);
     }
   } // namespace
 

@@ -38,7 +38,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 4, checksum " +
+      return "Debond run state 5, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -130,9 +130,11 @@ namespace Debond
     void
     exchange(Archive &archive, RunState<dim> &state)
     {
+      BondMemory &memory = state.path.memory;
       archive &state.scene &state.mesh &state.meshes.divisions &state
-        .has_last_mesh &state.shortfall &state.path.kinds &state.path
-        .memory &state.meshes.start &state.path.u;
+        .has_last_mesh &state.shortfall &state.path.kinds &memory
+        .reached &memory.toughness &memory.mixity &memory.taken &state.meshes
+        .start                                                  &state.path.u;
       exchange(archive, state.meshes.levels);
       exchange(archive, state.path.steps);
       exchange(archive, state.path.points);

@@ -295,6 +295,7 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
+        bonds.freeze_mode();
         Progress             silent;
         const ContactMinimum minimum =
           solver->minimise(factors, bonds, solver_parameters, silent);

@@ -177,7 +177,7 @@ namespace Debond
     state.broken_zone          = verification.broken_zone;
     state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
     state.cell_size_at_edge = cell_size_at_edge(problem, verification);
-    state.dissipated_energy = dissipated_energy(adhesion);
+    state.dissipated_energy = adhesion.dissipated_energy();
     for (const auto &[name, vector] : verification.reactions)
       state.vectors.emplace_back("reaction_" + as_title(name), vector);
     return state;

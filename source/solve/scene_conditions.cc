@@ -241,7 +241,23 @@ namespace Debond
     if (read_number(given.shear.stiffness, number))
       shear.stiffness = number / law.second_derivative(0.);
     if (read_number(given.shear.energy, number))
-      shear.energy = number / law.pieces().largest_value();
+      {
+        const double ratio = number / law.pieces().largest_value();
+        const double power = given.shear.exponent;
+        using MixedMode    = ShearParameters::MixedMode;
+        if (given.shear.mixed_mode == MixedMode::none)
+          shear.energy = ratio;
+        else if (given.shear.mixed_mode == MixedMode::benzeggagh_kenane)
+          shear.toughness = [=](const double m) {
+            return 1. + (ratio - 1.) * std::pow(m, power);
+          };
+        else
+          shear.toughness = [=](const double m) {
+            return std::pow(std::pow(1. - m, power) +
+                              std::pow(m / ratio, power),
+                            -1. / power);
+          };
+      }
     return std::make_unique<BondField<dim>>(
       shear.is_relative ? 1. : law.curvature(0.),
       law.bond_threshold(),

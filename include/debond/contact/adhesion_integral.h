@@ -10,9 +10,25 @@
 
 namespace Debond
 {
-  /// For each of ContactPoints::list() the least stretch that its bonds have
-  /// been at: what is above it does not come back. Empty if bonds return.
-  using BondMemory = std::vector<double>;
+  /// What bonds that do not return remember, for each of ContactPoints::list();
+  /// all empty if bonds return.
+  struct BondMemory
+  {
+    /// The least stretch that they have been at: what is above it does not come
+    /// back.
+    std::vector<double> reached = {};
+
+    /// Where their fracture energy depends on the mode, what it has been
+    /// multiplied with, the part of shear at the last state, and the energy
+    /// that they have taken.
+    std::vector<double> toughness = {}, mixity = {}, taken = {};
+
+    bool
+    empty() const
+    {
+      return reached.empty();
+    }
+  };
 
 
 
@@ -91,6 +107,11 @@ namespace Debond
     void
     set_memory(const BondMemory &memory);
 
+    /// Gives bonds whose fracture energy depends on the mode that of the mode
+    /// they remember, with which they have a potential.
+    void
+    freeze_mode();
+
     /// The memory of the bonds of a node; where points are not nodes the
     /// largest of the points around it.
     double
@@ -108,7 +129,9 @@ namespace Debond
     double
     reached_at(const Face &face, const Barycentric &place) const
     {
-      return broken.empty() ? 0. : broken[contact_points.nearest(face, place)];
+      return broken.empty() ?
+               0. :
+               broken.reached[contact_points.nearest(face, place)];
     }
 
     /// The piece of the law that the bonds of a node have not left for good.
@@ -127,7 +150,9 @@ namespace Debond
       for (unsigned int q = 0; q < contact_points.list().size(); ++q)
         {
           const ContactPoint<dim> &point = contact_points.list()[q];
-          visit(point, point.stretch(s), broken.empty() ? 0. : broken[q]);
+          visit(point,
+                point.stretch(s),
+                broken.empty() ? 0. : broken.reached[q]);
         }
     }
 
@@ -170,6 +195,10 @@ namespace Debond
     /// Phi(s), an energy.
     double
     value(const VectorView &s) const;
+
+    /// The energy that bonds which do not return have taken for good.
+    double
+    dissipated_energy() const;
 
     /// Phi(0), which is zero if nothing is prescribed and bonds return.
     double
@@ -242,6 +271,10 @@ namespace Debond
     /// Adapts what follows from the points and their memory.
     void
     update();
+
+    /// The sum of the law at 0, with the energy that bonds have now.
+    double
+    energy_at_rest() const;
 
     ContactPoints<dim>  contact_points;
     const AdhesiveLaw  &law;

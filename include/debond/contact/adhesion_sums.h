@@ -18,12 +18,6 @@ namespace Debond
   double
   open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s);
 
-  /// The energy that bonds that do not return have taken: Phi(0) with nothing
-  /// prescribed.
-  template <int dim>
-  double
-  dissipated_energy(const AdhesionIntegral<dim> &phi);
-
   /// The derivatives of Phi by the normal displacements of
   /// ContactBoundary::held_vertices.
   template <int dim>

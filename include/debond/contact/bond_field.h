@@ -8,6 +8,8 @@
 
 #include <debond/base/entry_error.h>
 
+#include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -30,6 +32,14 @@ namespace Debond
 
     /// Unless it is 0, bonds in shear break by themselves, with this energy.
     double shear_energy = 0.;
+
+    /// Gives bonds this many times the energy, with the stiffness they have.
+    void
+    toughen(const double factor)
+    {
+      energy *= factor;
+      stretch *= std::sqrt(factor);
+    }
   };
 
 
@@ -49,6 +59,10 @@ namespace Debond
     /// Both are multiplied by what the bonds of a point have of the law's
     /// stiffness.
     bool is_relative = false;
+
+    /// The fracture energy over that of opening, by the part of shear in what a
+    /// bond has stored; empty if it is always the same.
+    std::function<double(double)> toughness = {};
   };
 
 
@@ -109,6 +123,12 @@ namespace Debond
     BondScale
     at(const dealii::Point<dim>        &point,
        const dealii::types::boundary_id id) const;
+
+    const ShearBonds &
+    shear_bonds() const
+    {
+      return shear;
+    }
 
   private:
     double                                      a, M;

@@ -164,6 +164,20 @@ namespace Debond
     void
     set_factor(const double factor);
 
+    /// Multiplies the fracture energy of each point, see BondScale::toughen();
+    /// an empty list is of ones.
+    void
+    set_toughness(const std::vector<double> &by_point);
+
+    /// ShearBonds::toughness, null if the energy does not depend on the mode.
+    const std::function<double(double)> *
+    toughness_by_mode() const
+    {
+      return field != nullptr && field->shear_bonds().toughness ?
+               &field->shear_bonds().toughness :
+               nullptr;
+    }
+
     /// Returns whether all points are vertices, so that each node has a law of
     /// its own.
     bool
@@ -265,7 +279,8 @@ namespace Debond
     /// Empty if bonds are the same everywhere.
     std::vector<BondScale> bonds_of_nodes, bonds_of_held;
 
-    double load_factor = 1.;
+    double              load_factor = 1.;
+    std::vector<double> toughness;
 
     std::vector<ContactPoint<dim>> points;
     std::vector<unsigned int>      places; ///< in `points`, face by face

@@ -23,7 +23,19 @@ namespace Debond
   {
     std::string stiffness; ///< a number, or empty: as along the normal
     bool        breaks_separately = false;
-    std::string energy; ///< a number, if they break separately
+    std::string energy; ///< a number, if they break separately or by mode
+
+    /// How the fracture energy of bonds that break in all directions at once
+    /// depends on the part of shear, with the exponent of the formula.
+    enum class MixedMode
+    {
+      none,
+      benzeggagh_kenane,
+      power_law
+    };
+    MixedMode   mixed_mode      = MixedMode::none;
+    double      exponent        = 0.;
+    std::string mixed_mode_text = "none";
 
     bool is_somewhere = false; ///< or all are fixed or free
   };
