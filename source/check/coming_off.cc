@@ -45,12 +45,12 @@ namespace Debond
     if (motions.empty() || nodes.empty() || !law.lets_go())
       return {};
 
-    Eigen::MatrixXd towards = free_motions_of_contact(problem.unknowns())
-                                .transpose()
-                                .leftCols(nodes.size());
+    // Once bonds have broken nothing holds nodes along the boundary.
+    const Eigen::MatrixXd all =
+      free_motions_of_contact(problem.unknowns()).transpose();
+    Eigen::MatrixXd towards = all.leftCols(nodes.size());
     // Of nodes that a rotation does not move only rounding is left.
-    const double rounding =
-      Tolerance::motion_off * towards.cwiseAbs().maxCoeff();
+    const double rounding = Tolerance::motion_off * all.cwiseAbs().maxCoeff();
     towards = (towards.array().abs() < rounding).select(0., towards);
     const WorkOfLoads work = work_of_loads(problem, factors, motions);
     // Twice, as its errors are relative to what it projects.
@@ -60,12 +60,11 @@ namespace Debond
       projection = project_on_polar_cone(towards, *projection);
     if (!projection)
       return {};
-    Eigen::VectorXd &parts = *projection;
-    const double     largest_normal =
-      (towards.transpose() * parts).cwiseAbs().maxCoeff();
-    if (!(largest_normal > 0.))
+    Eigen::VectorXd &parts   = *projection;
+    const double     largest = (all.transpose() * parts).cwiseAbs().maxCoeff();
+    if (!(largest > 0.))
       return {};
-    parts /= largest_normal;
+    parts /= largest;
 
     dealii::Point<dim> centre;
     for (const auto &node : nodes)

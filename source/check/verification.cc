@@ -564,23 +564,21 @@ namespace Debond
 
 
 
-    /// The displacements of nodes along their tangents.
+    /// What the displacements of contact nodes, @p displacement being w + G, or
+    /// the jumps of glued ones are along the boundary.
     template <int dim>
     std::vector<dealii::Tensor<1, dim>>
-    displacements_along(const ContactBoundary<dim> &boundary,
-                        const VectorView           &s,
-                        const double                displacement_factor)
+    slips_of(const ElasticUnknowns<dim> &unknowns,
+             const DofVector            &displacement)
     {
-      std::vector<dealii::Tensor<1, dim>> result(boundary.nodes.size());
-      for (unsigned int i = 0; i < result.size(); ++i)
-        for (const auto &tangent : boundary.nodes[i].tangents)
-          result[i] +=
-            (tangent.is_held ?
-               displacement_factor *
-                 boundary.held_vertices[tangent.index].normal_displacement :
-               s(tangent.index)) *
-            tangent.direction;
-      return result;
+      const auto &nodes = unknowns.contact().boundary().nodes;
+      std::vector<dealii::Tensor<1, dim>> slips =
+        at_contact_nodes<dim>(unknowns.basis().to_nodal(displacement,
+                                                        BasisStep::frames),
+                              unknowns.contact().normal_dofs());
+      for (unsigned int i = 0; i < slips.size(); ++i)
+        slips[i] -= (slips[i] * nodes[i].normal) * nodes[i].normal;
+      return slips;
     }
 
 
@@ -668,8 +666,9 @@ namespace Debond
     const Eigen::VectorXd       s       = contact.trace(u);
     const Eigen::VectorXd       forces  = -contact.trace(residual);
     const std::vector<Interval> allowed = adhesion.force_intervals(s, 0.);
+    const DofVector displacement        = problem.unknowns().lifted(u, factors);
     const std::vector<dealii::Tensor<1, dim>> slips =
-      displacements_along(boundary, s, factors.displacements);
+      slips_of(problem.unknowns(), displacement);
     const std::vector<double> shear_damages = shear_damage(adhesion, s);
 
     Verification<dim> result;
@@ -693,7 +692,6 @@ namespace Debond
     if (adhesion.shears())
       result.slips = slips;
 
-    const DofVector   displacement = problem.unknowns().lifted(u, factors);
     const ForceScales found = force_scales(problem, u, residual, factors);
     const std::vector<LawScale> scales =
       law_scales<dim>(adhesion,

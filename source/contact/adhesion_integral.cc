@@ -353,24 +353,55 @@ namespace Debond
     // point.stretch(ds), but it does not move, so it is taken off again.
     double first = limit;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      if (point.bonds.energy == 0.)
+        return;
+      const auto piece = law.pieces().piece_at(stretch, reached);
       if (point.shears())
         {
           Jump<dim> way = {point.normal_displacement(ds) - point.offset, {}};
           for (const auto &part : point.slip)
             way.tangential += ds(part.index) * part.direction;
-          first = std::min(first,
-                           way_to_end(point,
-                                      law.pieces().piece_at(stretch, reached),
-                                      point.jump(s),
-                                      way));
+          first = std::min(first, way_to_end(point, piece, point.jump(s), way));
         }
-      else if (point.bonds.energy > 0.)
-        first = std::min(first,
-                         law.pieces()
-                           .piece_at(stretch, reached)
-                           .way_to_end(stretch,
-                                       point.stretch(ds) -
-                                         point.offset / point.bonds.stretch));
+      else
+        first =
+          std::min(first,
+                   piece.way_to_end(stretch,
+                                    point.stretch(ds) -
+                                      point.offset / point.bonds.stretch));
+    });
+    return first;
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::first_change_to(const AdhesionIntegral &next,
+                                         const VectorView       &s,
+                                         const VectorView       &next_s) const
+  {
+    double      first      = 1.;
+    const auto *next_point = next.points().list().data();
+    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      const auto &to = *next_point++;
+      if (point.bonds.energy == 0.)
+        return;
+      const auto piece = law.pieces().piece_at(stretch, reached);
+      if (!point.shears())
+        {
+          first =
+            std::min(first,
+                     piece.way_to_end(stretch, to.stretch(next_s) - stretch));
+          return;
+        }
+      const Jump<dim> jump = point.jump(s), end = to.jump(next_s);
+      first = std::min(first,
+                       way_to_end(point,
+                                  piece,
+                                  jump,
+                                  {end.normal - jump.normal,
+                                   end.tangential - jump.tangential}));
     });
     return first;
   }

@@ -305,7 +305,8 @@ namespace Debond
             // of this one. add() sets its error_factor.
             AdaptiveLevel level = {scene->n_cells(),
                                    unknowns.n_free_dofs(),
-                                   unknowns.contact().size(),
+                                   static_cast<unsigned int>(
+                                     scene->contact_boundary().nodes.size()),
                                    result.path.result.iterations,
                                    estimated_step,
                                    functional,

@@ -167,7 +167,13 @@ namespace Debond
           event                        = path.advance(0., 1.);
           if (event != Event::contact && event != Event::end)
             return {};
-          const double part = bonds.first_change(before, point() - before, 1.);
+          const auto at = [&](const double passed) {
+            return bonds.at(
+              last.factors.displacements +
+              passed * (next.displacements - last.factors.displacements));
+          };
+          const double part =
+            at(t).first_change_to(at(path.t()), before, point());
           if (part < 1.)
             return factor_between(last.factors,
                                   next,
@@ -208,12 +214,15 @@ namespace Debond
     if (!bonds.points().is_nodal() || bonds.shears())
       {
         // Displacements that are prescribed on the contact boundary change the
-        // springs' forces with the factor, so that the change is not known.
-        if (!unknowns.contact().boundary().held_vertices.empty())
+        // springs' forces between nodes with the factor, so that the change is
+        // not known.
+        const bool has_held =
+          !unknowns.contact().boundary().held_vertices.empty();
+        if (has_held && !bonds.points().is_nodal())
           return {};
-        if (is_at_rest)
+        if (is_at_rest && !has_held)
           return change_from_rest(scene, bonds, last, next);
-        if (!is_proportional)
+        if (!is_proportional || has_held)
           return change_between_nodes(scene, bonds, last, next, interruption);
         const double          whole = next.loads / last.factors.loads - 1.;
         const Eigen::VectorXd way   = whole * last.s;

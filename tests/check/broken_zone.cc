@@ -91,9 +91,10 @@ namespace
         error_for_good =
           std::max(error_for_good,
                    std::abs(broken_zone(boundary, law, adhesion, s) / 3. - 1.));
-        error_for_good = std::max(
-          error_for_good,
-          std::abs(dissipated_energy(adhesion) / (0.5 * 5. * M * M * 3.) - 1.));
+        error_for_good = std::max(error_for_good,
+                                  std::abs(adhesion.dissipated_energy() /
+                                             (0.5 * 5. * M * M * 3.) -
+                                           1.));
       }
     check(std::to_string(dim) + "D, sampled", error, 3e-3);
     check("broken for good", error_for_good, 1e-12);

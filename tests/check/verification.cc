@@ -41,7 +41,7 @@ namespace
         mesh,
         BoundaryConditions{{names.at("left"), names.at("right")},
                            {names.at("bottom")},
-                           true});
+                           TangentialDisplacement::fixed});
       std::vector<double> traction(dim, 0.);
       traction[1] = pressure * young_modulus / 1000.;
       traction[0] = traction[1] / 4.;
