@@ -293,23 +293,41 @@ def draw_contact(run):
     if n == 3:
         low, high = numpy.sort(numpy.ptp(run.contact.nodes, axis=0))[1:]
         height = min(3.6 + 22. * low / high, 13.)
-    figure, all_axes = plt.subplots(n, 1, figsize=(9, height), sharex=True)
+    rows = n + 2 * ("slip" in run.contact.mesh.point_data)
+    figure, all_axes = plt.subplots(rows, 1, figsize=(9, height * rows / n),
+                                    sharex=True)
     (draw_line if n == 2 else draw_surface)(run, all_axes)
     if run.title:
         figure.suptitle(run.title.strip(), fontsize=9)
     run.save(figure, "contact")
 
 
-def draw_line(run, both):
-    contact, length = run.contact, run.units["length"]
+def along(vectors, contact, pieces):
+    """Of vectors the part along the boundary, in the direction in which places grow.
+    The two shares of a face, from its nodes to its middle, go to and fro."""
+    result = numpy.empty(len(vectors))
+    for piece, x in pieces:
+        way = numpy.diff(contact.polygons[piece], axis=1)[:, 0]
+        way /= numpy.linalg.norm(way, axis=1, keepdims=True) * numpy.sign(x[-1] - x[0])
+        way[1::2] *= -1.
+        result[piece] = (vectors[piece] * way).sum(axis=1)
+    return result
+
+
+def draw_line(run, all_axes):
+    contact, length, stress = run.contact, run.units["length"], run.units["stress"]
     name, pieces = contact.pieces()
     # Where bonds are, which have no stiffness if they are rigid at first.
     M, stiffness = map(contact.at_nodes, ("bond_threshold", "bond_stiffness"))
-    for axes, key, label, usual in (
-            (both[0], "u_nu", "normal displacement" + length, M),
-            (both[1], "normal_force_density", "normal force density" +
-             run.units["stress"], M * stiffness)):
+    for axes, (key, label, usual) in zip(all_axes, (
+            ("u_nu", "normal displacement" + length, M),
+            ("normal_force_density", "normal force density" + stress, M * stiffness),
+            ("slip", "slip" + length, M),
+            ("tangential_force_density", "shear force density" + stress,
+             M * stiffness))):
         values = contact.at_nodes(key)
+        if values.ndim > 1:
+            values = along(values, contact, pieces)
         for piece, x in pieces:
             axes.plot(x, values[piece], color="0.6", lw=1)
             axes.scatter(x, values[piece], s=10., zorder=3,
@@ -327,29 +345,37 @@ def draw_line(run, both):
         contact.at_nodes("initial_gap") - M, numpy.nan)
     before = []
     for piece, x in pieces if (breaks < numpy.inf).any() else ():
-        before = both[0].plot(x, breaks[piece], color="0.4", ls="--", lw=1,
-                              drawstyle="steps-mid", label="bonds break")
-    run.legend(both[0], before, marker="o", ls="", ms=4)
-    both[1].set_xlabel(name + length)
-    both[1].set_title("positive: pressed, negative: held", fontsize=8,
-                      loc="right")
+        before = all_axes[0].plot(
+            x, breaks[piece], color="0.4", ls="--", lw=1, drawstyle="steps-mid",
+            label="bonds break" + " without slip" * (len(all_axes) > 2))
+    run.legend(all_axes[0], before, marker="o", ls="", ms=4)
+    all_axes[-1].set_xlabel(name + length)
+    all_axes[1].set_title("positive: pressed, negative: held", fontsize=8,
+                          loc="right")
 
 
 def draw_surface(run, all_axes):
-    """Opening, force and states, in the plane in which the surface is widest."""
-    contact, length = run.contact, run.units["length"]
+    """Opening, force, slip and shear force if bonds shear, and states, in the plane
+    in which the surface is widest."""
+    contact, length, stress = run.contact, run.units["length"], run.units["stress"]
     wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
     held = contact.state == "held"
     triangles = contact.mesh.cells[0].data[:, [[0, 1, 2], [0, 2, 3]]]
-    for axes, name, title, shown in (
-            (all_axes[0], "gap", "opening" + length, held | True),
-            (all_axes[1], "normal_force_density", "normal force density"
-             f"{run.units['stress']} (positive: pressed, negative: held)", ~held)):
-        scale = colour([axes], contact.at_nodes(name)[shown], title, "RdBu")
-        axes.tripcolor(*contact.mesh.points[:, wide].T, contact.mesh.point_data[name],
+    for axes, (name, title, shown) in zip(all_axes[:-1], (
+            ("gap", "opening" + length, held | True),
+            ("normal_force_density", f"normal force density{stress} (positive: "
+             "pressed, negative: held)", ~held),
+            ("slip", "slip" + length, ~held),
+            ("tangential_force_density", "shear force density" + stress, ~held))):
+        values = contact.mesh.point_data[name]
+        if values.ndim > 1:
+            values = numpy.linalg.norm(values, axis=1)
+        scale = colour([axes], values[contact.first][shown], title, "RdBu")
+        axes.tripcolor(*contact.mesh.points[:, wide].T, values,
                        triangles=triangles[shown].reshape(-1, 3), shading="gouraud",
                        cmap=scale.cmap, norm=scale.norm, rasterized=True)
-    for axes, shown in zip(all_axes, (held & False, held, held | True)):
+    of_states = [held & False, *[held] * (len(all_axes) - 2), held | True]
+    for axes, shown in zip(all_axes, of_states):
         axes.add_collection(PolyCollection(
             contact.polygons[shown][:, :, wide], facecolors=colours_of(
                 contact.state[shown]), edgecolors="face", linewidths=0.8,
@@ -357,8 +383,8 @@ def draw_surface(run, all_axes):
         axes.grid(False)
         axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
         axes.autoscale_view()
-    all_axes[2].set_xlabel("xyz"[wide[0]] + length)
-    run.legend(all_axes[2], [], lw=5)
+    all_axes[-1].set_xlabel("xyz"[wide[0]] + length)
+    run.legend(all_axes[-1], [], lw=5)
 
 
 def draw_path(run, wanted):
@@ -371,7 +397,7 @@ def draw_path(run, wanted):
     largest = max((name for name in path if name.startswith("reaction_")),
                   key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
     last = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
-    if factor == "factor":
+    if factor == "factor" and path["unit_load_work"].any():
         last = ["normal_force over factor", "factor over unit_load_work"]
     kinds = wanted or [f"broken_part over {factor}", f"J over {factor}", *last]
     figure, all_axes = plt.subplots(
