@@ -193,6 +193,25 @@ ends = figures(BENCH, "Contact law/Bond stiffness=if(x > 0.2, 69, 0)")["contact"
 (line,) = [line for line in ends.lines if line.get_label() == "bonds break"]
 assert line.get_xdata()[numpy.isfinite(line.get_ydata())].min() > 0.2
 
+# Of bonds that shear the slip in the direction of x, on the lower side and on the upper
+# one, and in 3D its size.
+BONDED = ["Contact law/Tangential displacement=bonded", "Solver/Search=none"]
+for side, load in ("bottom", "top"), ("top", "bottom"):
+    drawn = figures(BENCH, *BONDED, f"Boundary conditions/Contact boundary={side}",
+                    "Loads/Traction top=", f"Loads/Traction {load}=0.01*y; 0.002")
+    assert [axes.get_ylabel() for axes in drawn["contact"].axes] == [
+        "normal displacement", "normal force density", "slip", "shear force density"]
+    profile = picture.read_csv("run/contact_profile.csv")
+    slips = dict(zip(profile["x"].round(4), profile["slip_x"]))
+    dots = numpy.concatenate([dots.get_offsets() for dots
+                              in drawn["contact"].axes[2].collections])
+    assert min(slips.values()) < 0 < max(slips.values()) and len(dots) > len(slips)
+    for x, slip in dots[numpy.isfinite(dots[:, 1])]:
+        near(slip, slips[round(float(x), 4)], 1e-5)
+drawn = figures("bar-3d.prm", *BONDED)
+assert [axes.get_xlabel() for axes in drawn["contact"].axes[-2:]] == [
+    "slip", "shear force density"], drawn["contact"].axes
+
 # Without contact nodes, and without contact.vtu, only the body is drawn.
 for setting in "Mesh/Cells=1, 1", "Output/Contact VTU=false":
     assert set(figures(BENCH, setting)) - {"history"} == {"body"}
