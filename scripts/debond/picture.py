@@ -306,9 +306,9 @@ def along(vectors, contact, pieces):
     """Of vectors the part along the boundary, in the direction in which places grow.
     The two shares of a face, from its nodes to its middle, go to and fro."""
     result = numpy.empty(len(vectors))
-    for piece, x in pieces:
+    for piece, _ in pieces:
         way = numpy.diff(contact.polygons[piece], axis=1)[:, 0]
-        way /= numpy.linalg.norm(way, axis=1, keepdims=True) * numpy.sign(x[-1] - x[0])
+        way /= numpy.linalg.norm(way, axis=1, keepdims=True)
         way[1::2] *= -1.
         result[piece] = (vectors[piece] * way).sum(axis=1)
     return result
