@@ -162,7 +162,7 @@ def law(plot, study, rows):
         a, M = profile["bond_stiffness"], profile["bond_threshold"]
         plot.add(row.case.label, u, density, "o")
         scene = prm.read(row.case.path("parameters.prm"))
-        if numpy.ptp(a) + numpy.ptp(M) == 0 and \
+        if "slip_x" not in profile and numpy.ptp(a) + numpy.ptp(M) == 0 and \
                 scene["Contact law/Law"] == "winkler":
             ends = graphs.setdefault((a[0], M[0]), [0., 0.])
             ends[:] = min(ends[0], u.min()), max(ends[1], density.max())
