@@ -1,0 +1,564 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_shear.py DEBOND: bonds that bear shear as well as opening. Homogeneous states in closed
+form, on a foundation and in the oblique joint of code_aster's V3.04.001; strips beside a program
+of its own (dense matrices, a change of basis, majorise-minimise or branch and bound); the limits
+without shear stiffness and with a large one; bodies turned, mirrored, in other units, of degree 2
+and with other solvers."""
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import Scenes
+
+# Whether the least J is searched for and proved.
+PROVES = True
+
+scenes = Scenes(sys.argv[1])
+solve, check, close = scenes.solve, scenes.check, scenes.close
+NODAL = "Contact law/Quadrature=nodal"
+DEGREE_2 = ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]
+GAUSS = ["Contact law/Quadrature=gauss 2"]
+FROM_REST = "Solver/Search=none"
+NO_HEALING = ["Load path/Bonds heal=false", "Load path/Global branch=none"]
+TANGENTIAL = "Contact law/Tangential displacement="
+BONDED = TANGENTIAL + "bonded"
+SUPPORTS = "Boundary conditions/"
+
+
+def bonds(normal, shear, energy):
+    return [BONDED, f"Contact law/Bond stiffness={normal!r}", "Contact law/Bond threshold=",
+            f"Contact law/Bond shear stiffness={shear!r}",
+            f"Contact law/Fracture energy={energy!r}"]
+
+
+def vector(*components):
+    return "; ".join(repr(float(x)) for x in components)
+
+
+# ------------------------------------------------------------------ homogeneous states
+
+
+def column(E, nu, sigma, tau, dimension=2, hypothesis="plane stress"):
+    """A box on bonds alone, with the tractions of a state of stress in which its faces stay
+    straight: sigma upwards, tau along x (and z), and what keeps it from getting wider."""
+    if dimension == 2 and hypothesis == "plane stress":
+        across, modulus = nu, E / (1 - nu**2)
+    else:
+        across, modulus = nu / (1 - nu), E * (1 - nu) / (1 + nu) / (1 - 2 * nu)
+    lengths, cells = ((3, 2), (3, 2)) if dimension == 2 else ((3, 2, 1.5), (2, 1, 1))
+    entries = [f"Dimension={dimension}", "Mesh/Lengths=" + ", ".join(map(str, lengths)),
+               "Mesh/Cells=" + ", ".join(map(str, cells)), f"Material/Young modulus={E!r}",
+               f"Material/Poisson ratio={nu!r}", SUPPORTS + "Clamped boundaries=",
+               SUPPORTS + "Contact boundary=bottom"]
+    if dimension == 2:
+        entries += ["Material/Hypothesis=" + hypothesis]
+    tractions = {"top": (tau[0], sigma, *tau[1:])}
+    for side, sign in (("left", -1), ("right", 1)):
+        tractions[side] = (sign * across * sigma, sign * tau[0], *(0. for _ in tau[1:]))
+    for side, sign in (("back", -1), ("front", 1))[:2 * (dimension - 2)]:
+        tractions[side] = (0., sign * tau[1], sign * across * sigma)
+    entries += [f"Loads/Traction {side}={vector(*t)}" for side, t in tractions.items()]
+    area = math.prod(lengths) / lengths[1]
+    return entries, area, lengths[1], modulus, E / 2 / (1 + nu)
+
+
+def check_columns():
+    """The least J is that of the complementary energy, with its sign changed."""
+    scenes.section("Columns")
+    for name, more, dimension, hypothesis in (
+            ("nodal", [NODAL], 2, "plane stress"), ("gauss", GAUSS, 2, "plane strain"),
+            ("degree 2", DEGREE_2, 2, "plane stress"), ("3D", [NODAL], 3, ""),
+            ("3D, degree 2", DEGREE_2, 3, ""),
+            ("energy bundle", [NODAL, "Solver/Method=energy bundle"], 2, "plane stress")):
+        for E, kn, kt, sigma, tau in ((1000., 50., 20., 0.3, (0.2, -0.15)),
+                                      (3., 7., 900., 1e-3, (-4e-3, 1e-3))):
+            tau = tau[:dimension - 1]
+            energy = .5 * (sigma**2 / kn + sum(t * t for t in tau) / kt)
+            scene, area, height, modulus, shear = column(E, .3, sigma, tau, dimension, hypothesis)
+            at = f"{name}, E {E}"
+            held = solve(*scene, *more, FROM_REST, *bonds(kn, kt, energy * (1 + 1e-6)))
+            check(at + " holds", held["status"] == "success", (held["status"], held["errors"]))
+            tolerance = 1e-8 if name == "energy bundle" else 1e-10
+            close(at + ": J", held["functional"], -area * (energy + height / 2 * (
+                sigma**2 / modulus + sum(t * t for t in tau) / shear)), tolerance)
+            check(at + ": law", held["law_violation"] < 1e-9, held["law_violation"])
+            check(at + ": states", bool(held["profile"]) and all(
+                row["state"] == "bonded" for row in held["profile"]))
+            size = math.hypot(sigma / kn, *(t / kt for t in tau))
+            for row in held["profile"]:
+                node = f"{at}, ({row['x']}, {row['y']}): "
+                close(node + "opening", -row["u_nu"], sigma / kn, tolerance, size)
+                for axis, t in zip("xz", tau):
+                    close(node + "slip_" + axis, row["slip_" + axis], t / kt, tolerance, size)
+                close(node + "slip_y", row["slip_y"], 0, tolerance, size)
+                close(node + "shear force", row["shear_force_density"],
+                      math.hypot(*tau), 1e2 * tolerance)
+                close(node + "pull", row["normal_force_density"], -sigma, 1e2 * tolerance)
+                close(node + "mode", row["mode_mixity"],
+                      sum(t * t for t in tau) / kt / (2 * energy), 1e2 * tolerance)
+            off = solve(*scene, *more, FROM_REST, *bonds(kn, kt, energy * (1 - 1e-6)))
+            check(at + " comes off", off["status"] == "comes off", (off["status"], off["errors"]))
+            # Each of two energies is just enough for the traction along its direction.
+            for part, wanted in ((1e-6, "success"), (-1e-6, "comes off")):
+                apart = solve(*scene, *more, FROM_REST, *bonds(kn, kt, sigma**2 / kn / 2 * 1.5),
+                              "Contact law/Bond failure=separate",
+                              "Contact law/Shear fracture energy="
+                              f"{.5 * sum(t * t for t in tau) / kt * (1 + part)!r}")
+                check(f"{at}, separate, {part}", apart["status"] == wanted or
+                      wanted != "success" and apart["status"] != "success",
+                      (apart["status"], apart["errors"]))
+                if wanted == "success":
+                    close(f"{at}, separate: J", apart["functional"], held["functional"],
+                          tolerance)
+
+
+def check_pressed():
+    """In contact bonds hold in shear until their energy is spent."""
+    scenes.section("Pressed")
+    kn, kt, energy, E, nu = 50., 20., .02, 1000., 0.
+    for dimension, more in ((2, [NODAL]), (2, DEGREE_2), (2, GAUSS), (3, [NODAL])):
+        tau = (.6, -.3)[:dimension - 1]
+        scene, area, height, _, shear = column(E, nu, -2., tau, dimension)
+        size = math.hypot(*tau)
+        scene += bonds(kn, kt, energy)
+        at = f"{dimension}D, {more[0]}"
+        held = solve(*scene, *more, FROM_REST)
+        close(at + ": J", held["functional"], -area / 2 * (
+            size**2 / kt + height * (4 / E + size**2 / shear)), 1e-10)
+        check(at + ": mode", all(row["mode_mixity"] == 1 for row in held["profile"]))
+        for row in held["profile"]:
+            check(at + " is in contact", (row["u_nu"], row["state"]) == (0, "contact"), row)
+            close(at + ": slip", row["slip_x"], tau[0] / kt, 1e-10)
+            close(at + ": shear force", row["shear_force_density"], size, 1e-9)
+        # With the top moved, so that there is something to hold what has come off.
+        moved = [e for e in scene if "Traction top" not in e]
+        slip = [t / kt + height * t / shear for t in tau]
+        moved += [SUPPORTS + "Displacement top=" + vector(slip[0], -2 * height / E, *slip[1:])]
+        factor = math.sqrt(2 * energy * kt) / size
+        path = solve(*moved, *more, *NO_HEALING,
+                     *("Load path/" + which + f"={factor / 2!r}, {factor * .999!r}, {factor * 1.3!r}"
+                       for which in ("Factors", "Displacement factors")))["path"]
+        check(at + ": path", len(path) == 3, path)
+        for row, b in zip(path[:2], (factor / 2, factor * .999)):
+            close(f"{at}, {b}: J", row["J"], area * b * b / 2 * (
+                size**2 / kt + height * (4 / E + size**2 / shear)), 1e-10)
+            check(f"{at}, {b}: nothing broke", row["dissipated_energy"] == 0)
+        if len(path) == 3:
+            close(at + ": first break", path[2]["change_factor"], factor, 1e-10)
+            close(at + ": broken", path[2]["dissipated_energy"], area * energy, 1e-10)
+
+
+def check_layers():
+    """Two layers with bonds in series, moved at the top: opening, slip, J and first break."""
+    scenes.section("Layers")
+    kn, kt, energy, move = 50., 20., .02, (.5, 1.)
+    heights, moduli = (2., 2.), (1000., 2000.)
+    across = sum(h / E for h, E in zip(heights, moduli))
+    along = 2 * across
+    p, t = move[1] / (1 + kn * across), move[0] / (1 + kt * along)
+    breaks = math.sqrt(2 * energy / (kn * p**2 + kt * t**2))
+    stress, J = kn * p, .5 * (move[1]**2 / (across + 1 / kn) + move[0]**2 / (along + 1 / kt))
+    lift = " + ".join([repr(p), f"{stress / moduli[0]!r} * min(y, {heights[0]!r})",
+                       f"{stress / moduli[1]!r} * max(y - {heights[0]!r}, 0)"])
+    scene = ["Mesh/Lengths=6, 4", "Mesh/Cells=3, 4", f"Material/Young modulus={moduli[0]!r}",
+             f"Parts/upper=y > {heights[0]!r}", f"Material/Young modulus upper={moduli[1]!r}",
+             "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=",
+             SUPPORTS + "Contact boundary=bottom", SUPPORTS + "Displacement top=" + vector(*move),
+             *bonds(kn, kt, energy), *NO_HEALING]
+    # The shear at the sides is a load, or comes from sides that are led up and down.
+    for name, sides in (("loads", [f"Loads/Traction left={vector(0, -kt * t)}",
+                                   f"Loads/Traction right={vector(0, kt * t)}"]),
+                        ("led", [SUPPORTS + f"Displacement {side}=free; {lift}"
+                                 for side in ("left", "right")])):
+        for more in ([NODAL], DEGREE_2, GAUSS):
+            factors = f"{breaks / 2!r}, {breaks * .999!r}, {breaks * 1.2!r}"
+            path = solve(*scene, *sides, *more, "Load path/Displacement factors=" + factors,
+                         *(["Load path/Factors=" + factors] if name == "loads" else []))["path"]
+            at = f"{name}, {more[0]}"
+            check(at + " has all steps", len(path) == 3, path)
+            for row, b in zip(path[:2], (breaks / 2, breaks * .999)):
+                close(f"{at}, {b}: J", row["J"], 6 * J * b * b, 1e-10)
+                close(f"{at}, {b}: opening", row["largest_gap"], b * p, 1e-10)
+                close(f"{at}, {b}: reaction", row["reaction_top_x"], 6 * b * kt * t, 1e-10)
+                check(f"{at}, {b}: nothing broke", row["dissipated_energy"] == 0)
+            if len(path) == 3:
+                close(at + ": first break", path[2]["change_factor"], breaks, 1e-10)
+
+
+def check_softening_column():
+    """A column without elasticity to speak of: the law itself in the effective opening."""
+    scenes.section("Softening column")
+    k, ratio, strength, energy = 100., .4, 1., .02
+    first, last = strength / k, 2 * energy / strength
+    # Directions of the displacement and effective openings, the last ones on the way back.
+    for angle in (0., .7, math.pi / 2):
+        steps = (.5 * first, .5 * (first + last), .8 * last, .3 * last, 1.1 * last)
+        move = (math.sin(angle) / math.sqrt(ratio), math.cos(angle))
+        path = solve(
+            "Mesh/Lengths=2, 1", "Mesh/Cells=2, 1", "Material/Young modulus=1e7",
+            "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=", NODAL,
+            SUPPORTS + "Contact boundary=bottom", SUPPORTS + "Displacement top=" + vector(*move),
+            SUPPORTS + f"Displacement left=free; {move[1]!r}",
+            SUPPORTS + f"Displacement right=free; {move[1]!r}", *bonds(k, ratio * k, energy),
+            "Contact law/Law=bilinear", f"Contact law/Bond strength={strength!r}", *NO_HEALING,
+            "Load path/Displacement factors=" + ", ".join(map(repr, steps)))["path"]
+        check(f"{angle} has all steps", len(path) == len(steps), path)
+        most = 0.
+        for row, l in zip(path, steps):
+            most = max(most, l)
+            damage = min(max(last * (most - first) / most / (last - first), 0), 1)
+            taken = energy * damage * first / (last - damage * (last - first))
+            close(f"{angle}, {l}: J", row["J"], 2 * (taken + (1 - damage) * k * l * l / 2), 2e-4)
+            close(f"{angle}, {l}: dissipated", row["dissipated_energy"], 2 * taken, 4e-4,
+                  2 * energy)
+
+
+# ------------------------------------------------------------------ an oblique joint
+
+
+SQUARE = """Point(1) = {0,0,0,250}; Point(2) = {1000,0,0,250}; Point(3) = {1000,1000,0,250};
+Point(4) = {0,1000,0,250};
+Line(1) = {1,2}; Line(2) = {2,4}; Line(3) = {4,1}; Line(4) = {2,3}; Line(5) = {3,4};
+Curve Loop(1) = {1,2,3}; Plane Surface(1) = {1};
+Curve Loop(2) = {4,5,-2}; Plane Surface(2) = {2};
+Physical Surface("a") = {1}; Physical Surface("b") = {2};
+Physical Curve("low") = {1}; Physical Curve("left") = {3};
+Physical Curve("right") = {4}; Physical Curve("up") = {5};
+"""
+
+
+def check_oblique():
+    """Pulled by sigma along x, the joint at 45 degrees opens by sigma / (2 k_n) and slips by
+    sigma / (2 k_t); V3.04.001 of code_aster."""
+    scenes.section("Oblique joint")
+    (scenes.directory / "square.geo").write_text(SQUARE)
+    E, nu, kn, kt, sigma = 30000., .2, 20., 40., 3.
+    law = [f"Material/Young modulus={E!r}", f"Material/Poisson ratio={nu!r}",
+           SUPPORTS + "Contact boundary=cut_1", *bonds(kn, kt, 1e3), FROM_REST]
+    diagonal = ["Mesh/Source=file", "Mesh/File=square.geo", SUPPORTS + "Clamped boundaries=",
+                SUPPORTS + "Roller boundaries=low, left", f"Loads/Traction right={sigma!r}; 0"]
+    cosine = math.sqrt(.5)
+    turned = ["Mesh/Lengths=1000, 1000", "Mesh/Cells=4, 4", "Mesh/Rotation=45",
+              SUPPORTS + "Clamped boundaries=",
+              SUPPORTS + f"Displacement left={sigma / E!r} * x; {-nu * sigma / E!r} * y"]
+    turned += [f"Loads/Traction {side}={vector(sign * sigma * cosine, 0)}"
+               for side, sign in (("right", 1), ("bottom", 1), ("top", -1))]
+    cube = ["Dimension=3", "Mesh/Lengths=1000, 1000, 1000", "Mesh/Cells=2, 2, 1",
+            *(e + ("; 0" if "Traction" in e else "") for e in turned[2:-4])]
+    cube += [SUPPORTS + f"Displacement left={sigma / E!r} * x; {-nu * sigma / E!r} * y; "
+             f"{-nu * sigma / E!r} * z"]
+    cube += [e + "; 0" for e in turned[-3:]]
+    for name, scene, area, height in (
+            ("a | b", [*diagonal, "Mesh/Cuts=a | b"], 1000 / cosine, 1.),
+            ("b | a", [*diagonal, "Mesh/Cuts=b | a"], 1000 / cosine, 1.),
+            ("degree 2", [*diagonal, "Mesh/Cuts=a | b", *DEGREE_2], 1000 / cosine, 1.),
+            ("turned", [*turned, "Mesh/Cuts=x = 500"], 1000, 1.),
+            ("3D", [*cube, "Mesh/Cuts=x = 500"], 1000, 1000.)):
+        result = solve(*law, *scene)
+        check(name + " holds", result["status"] == "success", (result["status"], result["errors"]))
+        check(name + " has nodes", len(result["profile"]) > 3)
+        for row in result["profile"]:
+            close(name + ": opening", -row["u_nu"], sigma / (2 * kn), 1e-10)
+            close(name + ": slip", math.hypot(*(row[key] for key in row if "slip_" in key)),
+                  sigma / (2 * kt), 1e-10)
+            close(name + ": shear", row["shear_force_density"], sigma / 2, 1e-8)
+            close(name + ": mode", row["mode_mixity"], kn / (kn + kt), 1e-9)
+        if name != "3D" and name != "turned":
+            # Rollers do no work: J is half the work of the load, with its sign changed.
+            close(name + ": J", result["functional"], -.5 * (
+                sigma**2 / E * 1e6 + area * (sigma / 2)**2 * (1 / kn + 1 / kt)), 1e-10)
+
+
+# ------------------------------------------------------------------ strips
+
+
+STRIPS = ["Mesh/Lengths=40, 4", "Mesh/Cells=20, 4", "Mesh/Cuts=y = 2", "Parts/upper=y > 2",
+          "Parts/tl=left: y > 3", "Parts/bl=left: y < 1", "Parts/end=left: y > 2",
+          "Material/Young modulus=2000", "Material/Young modulus upper=1000",
+          "Material/Poisson ratio=0.3", SUPPORTS + "Clamped boundaries=right",
+          SUPPORTS + "Contact boundary=cut_1", NODAL]
+FOUNDATION = ["Mesh/Lengths=40, 2", "Mesh/Cells=20, 2", "Parts/tl=left: y > 1",
+              "Material/Young modulus=1000", "Material/Poisson ratio=0.3", NODAL,
+              SUPPORTS + "Clamped boundaries=right", SUPPORTS + "Contact boundary=bottom"]
+LAW = bonds(50., 20., .02)
+
+
+def strips(name, factor):
+    """L: pulled at the end; D: moved there; F: one of them on a foundation."""
+    foundation = name.startswith("F")
+    scene = FOUNDATION if foundation else [e if "Cells" not in e else
+                                           f"Mesh/Cells={name[1:]}, 4" for e in STRIPS]
+    if "D" in name:
+        scene = [*scene, SUPPORTS + f"Displacement tl={vector(.2 * factor, factor)}"]
+        if not foundation:
+            scene += [SUPPORTS + f"Displacement bl=free; {-.2 * factor!r}"]
+    else:
+        scene = [*scene, f"Loads/Traction {'left' if foundation else 'end'}="
+                 + vector(.2 * factor, .1 * factor)]
+    return [*scene, *LAW]
+
+
+# Factor, J from rest, broken, least J, broken.
+TABLE = {
+    "L20": ((.5, -1.622934876568e-02, 0, -1.622934876568e-02, 0),
+            (1., -6.491739506272e-02, 0, -6.491739506272e-02, 0),
+            (1.4, -1.272380943229e-01, 0, -1.272380943229e-01, 0),
+            (1.6, -1.661885313606e-01, 0, -2.757861984678e-01, 19),
+            (1.8, -2.103323600032e-01, 0, -5.456044074352e-01, 19)),
+    "L10": ((1., -4.550491975316e-02, 0, -4.550491975316e-02, 0),
+            (2., -1.820196790126e-01, 0, -1.820196790126e-01, 0)),
+    "D20": ((.2, 3.411094908212e-01, 3, 2.944456067013e-01, 5),
+            (.6, 9.502380904419e-01, 7, 8.839118054890e-01, 10),
+            (1., 1.779755015247, 10, 1.691799221291, 14),
+            (1.5, 3.183277302121, 13, 3.076537957952, 17),
+            (2., 4.996643852301, 16, 4.931979118030, 18)),
+    "D10": ((.2, 3.811167864319e-01, 2, 3.373391987231e-01, 3),
+            (.6, 1.113548646214, 4, 9.844311585626e-01, 6),
+            (1., 2.154832011658, 5, 1.837041392455, 8),
+            (2., 5.548165569818, 8, 5.350890607916, 10)),
+    "F20": ((.5, -1.834869186235e-04, 0, -1.834869186235e-04, 0),
+            (1., -7.339476744938e-04, 0, -7.339476744938e-04, 0),
+            (1.4, -1.438537442008e-03, 0, -3.614033976365e-02, 19),
+            (2., -2.935790697975e-03, 0, -8.472020575887e-01, 20)),
+    "FD20": ((.2, 3.488021397405e-01, 4, 3.323578081148e-01, 5),
+             (.6, 1.006612289214, 9, 9.607772042836e-01, 12),
+             (1., 1.760797080990, 14, 1.734800298907, 16),
+             (1.5, 3.091781784079, 17, 3.078935040691, 18))}
+
+
+def broken(result):
+    return sum(row["state"] == "broken" for row in result["profile"])
+
+
+def check_profile(name, result, kn, kt, energy):
+    """What the bonds of each node bear is what their law says of its opening and slip."""
+    rows = [row for row in result["profile"] if row["state"] != "held"]
+    scale = max(math.hypot(row["normal_force_density"], row["shear_force_density"])
+                for row in rows)
+    for row in rows:
+        at = f"{name} at {row['x']}"
+        slip = math.hypot(row["slip_x"], row["slip_y"])
+        parts = kn * row["u_nu"]**2, kt * slip**2
+        holds = sum(parts) <= 2 * energy
+        close(at + ": shear", row["shear_force_density"], holds * kt * slip, 1e-9, scale)
+        if row["state"] != "contact":
+            close(at + ": pull", row["normal_force_density"], holds * kn * row["u_nu"], 1e-9,
+                  scale)
+        close(at + ": mode", row["mode_mixity"] * sum(parts), parts[1], 1e-9)
+
+
+def check_strips():
+    scenes.section("Strips")
+    for name, rows in TABLE.items():
+        for factor, from_rest, n_from_rest, least, n_least in rows:
+            at = f"{name}, {factor}"
+            result = solve(*strips(name, factor), FROM_REST)
+            close(at + ", from rest", result["functional"], from_rest, 1e-9)
+            check(at + ", broken", broken(result) == n_from_rest, broken(result))
+            check(at + ", balance", result["force_imbalance"] < 1e-10)
+            check_profile(at, result, 50., 20., .02)
+            if PROVES:
+                result = solve(*strips(name, factor), "Solver/Prove=true")
+                close(at + ", least", result["functional"], least, 1e-9)
+                check(at + ", least, broken", broken(result) == n_least, broken(result))
+                check(at + " is proved", result["proof"]["status"] == "proved")
+                check_profile(at + ", least", result, 50., 20., .02)
+
+
+def check_three_strips():
+    scenes.section("Three strips")
+    scene = ["Mesh/Lengths=40, 5", "Mesh/Cells=10, 5", "Mesh/Cuts=y = 2, y = 3",
+             "Parts/top_strip=y > 3", "Parts/low_strip=y < 2", "Material/Young modulus=500",
+             "Material/Young modulus top_strip=1000", "Material/Young modulus low_strip=2000",
+             "Material/Poisson ratio=0.3", SUPPORTS + "Clamped boundaries=right", NODAL,
+             SUPPORTS + "Contact boundary=cut_1, cut_2", *LAW, "Parts/tl=left: y > 4",
+             "Parts/bl=left: y < 1"]
+    for factor, from_rest, n_from_rest, least, n_least in (
+            (.2, 4.700819017672e-01, 4, 3.327248375590e-01, 3),
+            (.6, 1.530478376150, 6, 9.861502994298e-01, 6),
+            (1., 2.724952762123, 8, 1.835961798966, 8)):
+        moved = [*scene, SUPPORTS + "Displacement tl=" + vector(.2 * factor, factor),
+                 SUPPORTS + f"Displacement bl=free; {-.2 * factor!r}"]
+        result = solve(*moved, FROM_REST)
+        close(f"{factor}, from rest", result["functional"], from_rest, 1e-9)
+        check(f"{factor}, broken", broken(result) == n_from_rest, broken(result))
+        if PROVES:
+            result = solve(*moved, "Solver/Prove=true")
+            close(f"{factor}, least", result["functional"], least, 1e-9)
+            check(f"{factor}, least, broken", broken(result) == n_least, broken(result))
+
+
+STEPS = (.2, .6, 1., 1.5, 1., .5, 0., 1., 2.)
+SEPARATE = ["Contact law/Bond failure=separate", "Contact law/Shear fracture energy=0.04"]
+BILINEAR = [*bonds(100., 40., .02), "Contact law/Bond strength=1", "Contact law/Law=bilinear"]
+# Totals and what was dissipated at each of the steps.
+PATHS = {
+    "common": (LAW, (.3411094908212, .9502380904419, 1.779755015247, 3.183277302121,
+                     1.692567689832, .7981419224580, .5, 1.692567689832, 4.996643852301),
+               (.1, .26, .38, .5, .5, .5, .5, .5, .62)),
+    "separate": ([*LAW, *SEPARATE],
+                 (.3554343752197, 1.211318430691, 2.359280110136, 4.157783506876,
+                  2.325681558612, 1.226420389653, .86, 2.325681558612, 6.254850258719),
+                 (.1, .22, .46, .86, .86, .86, .86, .86, 1.18)),
+    "bilinear": (BILINEAR, (.3016823950142, .8960007834076, 1.703979872620, 3.086836391785,
+                            1.743201394846, .9370203966818, .6682933972939, 1.743201394846,
+                            4.937292232969),
+                 (.18, .3842051291336, .5452480956434, *[.6682933972939] * 5, .74)),
+    "exponential": ([*BILINEAR, "Contact law/Law=exponential"],
+                    (.2969580840781, .8921326380052, 1.700001234665, 3.082811757207,
+                     1.750580440403, .9512416503211, .6847953869604, 1.750580440403,
+                     4.933294270284),
+                    (.1671844269594, .3677706566792, .5262857170822, *[.6847953869604] * 5,
+                     .7285810339559))}
+
+
+def moved_strips(law, *more, steps=STEPS):
+    return [*(e for e in strips("D20", 1.) if e not in LAW), *law, *more,
+            "Load path/Displacement factors=" + ", ".join(map(repr, steps))]
+
+
+def check_paths():
+    scenes.section("Paths")
+    for name, (law, totals, dissipated) in PATHS.items():
+        smooth = name in ("bilinear", "exponential")
+        path = solve(*moved_strips(law, *NO_HEALING))["path"]
+        check(name + " has all steps", len(path) == len(STEPS), path)
+        for row, total, taken in zip(path, totals, dissipated):
+            at = f"{name}, step {row['step']:g}"
+            # The dissipated energy is flat at a minimum of one that softens.
+            close(at + ": total", row["J"], total, 1e-8 if smooth else 1e-9)
+            close(at + ": dissipated", row["dissipated_energy"], taken, 1e-6 if smooth else 1e-12)
+            check(at + ": law", row["law_violation"] < 1e-8, row["law_violation"])
+            if not smooth:
+                # Of springs that are on or off what is not dissipated is half the work.
+                close(at + ": work", 2 * (row["J"] - taken),
+                      row["displacement_factor"] * row["unit_displacement_work"], 1e-9, total)
+        if PROVES and name == "common":
+            rows = [row for row in TABLE["D20"] if row[0] in STEPS]
+            path = solve(*moved_strips(law, "Load path/Global branch=prove",
+                                       steps=[row[0] for row in rows]))["path"]
+            for row, (factor, _, _, least, _) in zip(path, rows, strict=True):
+                close(f"{name}, {factor}, on a path", row["global_J"], least, 1e-9)
+                check("is proved", row["global_minimum"] == "global")
+    # The factor of the first break, beside that at which a bond just does not break.
+    path = solve(*moved_strips(LAW, *NO_HEALING, steps=(.01, .2)))["path"]
+    first = path[1]["change_factor"] if len(path) == 2 else math.nan
+    for part, wanted in ((1 - 1e-9, 0.), (1 + 1e-9, .02)):
+        path = solve(*moved_strips(LAW, *NO_HEALING, steps=(first * part,)))["path"]
+        check(f"first break {part}", bool(path) and (path[-1]["dissipated_energy"] > 0) ==
+              (wanted > 0), path)
+
+
+# ------------------------------------------------------------------ limits and invariances
+
+
+def compare(name, path, other, tolerance, scale=1.):
+    """Of two load paths, the second one with scale times the energies."""
+    check(name + " has all steps", len(path) == len(other) > 0, (len(path), len(other)))
+    for a, b in zip(path, other):
+        for key in "J", "dissipated_energy", "elastic_energy":
+            close(f"{name}, step {b['step']:g}: {key}", a[key], scale * b[key], tolerance,
+                  scale * other[-1]["J"])
+
+
+def check_limits():
+    scenes.section("Limits")
+    solid = ["Dimension=3", "Mesh/Lengths=10, 4, 2", "Mesh/Cells=5, 4, 1", "Mesh/Cuts=y = 2",
+             "Parts/tl=left: y > 3", "Parts/bl=left: y < 1", "Material/Young modulus=1000",
+             *STRIPS[-4:], SUPPORTS + "Displacement tl=0.05; 0.1; 0.02",
+             SUPPORTS + "Displacement bl=free; -0.1; free"]
+    law = [e for e in LAW if "shear" not in e and e != BONDED]
+    for name, scene in (("D20", [e for e in strips("D20", .6) if e not in LAW]),
+                        ("FD20", [e for e in strips("FD20", .6) if e not in LAW]),
+                        ("degree 2", [*(e for e in strips("D10", .6) if e not in LAW), *DEGREE_2]),
+                        ("3D", solid)):
+        both = [solve(*scene, *law, TANGENTIAL + "free", FROM_REST),
+                solve(*scene, *bonds(50., 0., .02), FROM_REST)]
+        close(name + ", without shear stiffness", both[1]["functional"], both[0]["functional"],
+              1e-9)
+        check(name + ", broken", broken(both[0]) == broken(both[1]) > 0)
+        close(name + ": slip without force",
+              max(row["shear_force_density"] for row in both[1]["profile"]), 0, 1e-9)
+        fixed = solve(*scene, *bonds(50., 20., .02)[1:3], "Contact law/Fracture energy=100",
+                      TANGENTIAL + "fixed", FROM_REST)["functional"]
+        last = None
+        for kt in (1e5, 1e7, 1e9):
+            off = 1 - solve(*scene, *bonds(50., kt, 100.), FROM_REST)["functional"] / fixed
+            check(f"{name}, fixed but for 1 / {kt}", 0 < off < 1e4 / kt, off)
+            check(f"{name}, {kt}: in proportion", last is None or abs(last / off / 100 - 1) < .1,
+                  (last, off))
+            last = off
+
+
+def turned(entry, degrees):
+    """A condition on x and y for the body turned about the origin."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return entry.replace("y", f"({c!r} * y - {s!r} * x)")
+
+
+def check_invariances():
+    scenes.section("Invariances")
+    both = [SUPPORTS + "Displacement tl=0.2; 1", SUPPORTS + "Displacement bl=-0.1; -0.2"]
+    plain = [*(e for e in moved_strips([]) if "Displacement " not in e), *NO_HEALING]
+    for name, law in (("common", LAW), ("separate", [*LAW, *SEPARATE]), ("bilinear", BILINEAR)):
+        other = solve(*plain, *both, *law)["path"]
+        tolerance = 1e-7 if name == "bilinear" else 1e-10
+        for degrees in (37, 180, -90):
+            c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+            moved = [SUPPORTS + f"Displacement {side}=" + vector(c * x - s * y, s * x + c * y)
+                     for side, x, y in (("tl", .2, 1.), ("bl", -.1, -.2))]
+            compare(f"{name}, turned by {degrees}", solve(
+                *(turned(e, degrees) if e.startswith("Parts") else e for e in plain), *law, *moved,
+                f"Mesh/Rotation={degrees}")["path"], other, tolerance)
+        # The bodies exchanged: what was above is below.
+        compare(name + ", mirrored", solve(
+            *(e for e in plain if "Young" not in e), *law, "Material/Young modulus=1000",
+            "Material/Young modulus upper=2000", SUPPORTS + "Displacement tl=-0.1; 0.2",
+            SUPPORTS + "Displacement bl=0.2; -1")["path"], other, tolerance)
+        compare(name + ", multigrid", solve(*plain, *both, *law,
+                                            "Solver/Linear solver=multigrid")["path"], other,
+                max(tolerance, 1e-8))
+        # In metres and pascal, energies by thickness stay.
+        factors = {"Lengths": 1e-3, "modulus": 1e6, "stiffness": 1e9, "energy": 1e3,
+                   "Bond strength": 1e6}
+        metres = []
+        for entry in [*plain, *law]:
+            key, value = entry.split("=", 1)
+            for word, factor in factors.items():
+                if word in key and value:
+                    value = ", ".join(repr(float(x) * factor) for x in value.split(","))
+            metres.append(f"{key}={value}")
+        metres += ["Mesh/Cuts=y = 0.002", "Parts/upper=y > 0.002", "Parts/tl=left: y > 0.003",
+                   "Parts/bl=left: y < 0.001", "Parts/end=left: y > 0.002",
+                   SUPPORTS + "Displacement tl=2e-4; 1e-3",
+                   SUPPORTS + "Displacement bl=-1e-4; -2e-4"]
+        compare(name + ", m and Pa", solve(*metres)["path"], other, tolerance)
+
+    # One cell in z that does not move along it is the plane body in plane strain. Crossed cells
+    # of 24 tetrahedra are not those of four triangles: homogeneous states alone are the same.
+    for sigma in (.3, -.3):
+        scene, area, *_ = column(1000., .3, sigma, (.2,), 2, "plane strain")
+        flat = solve(*scene, *LAW, NODAL, FROM_REST)
+        solid = ["Dimension=3", "Mesh/Lengths=3, 2, 1", "Mesh/Cells=3, 2, 1",
+                 *(e + "; 0" if "Traction" in e else e for e in scene[3:] if "Hypo" not in e),
+                 SUPPORTS + "Roller boundaries=back, front"]
+        solid = solve(*solid, *LAW, NODAL, FROM_REST)
+        close(f"plane strain in 3D, {sigma}", solid["functional"], flat["functional"], 1e-10)
+        check(f"both hold, {sigma}", flat["status"] == solid["status"] == "success")
+
+    # Half of twice as much: a second strip below, mirrored, takes away slip but no opening.
+    up, down = (vector(0, x) for x in (.5, -.5))
+    two = solve(*plain, *LAW, "Material/Young modulus=1000", SUPPORTS + "Displacement tl=" + up,
+                SUPPORTS + "Displacement bl=" + down)["path"]
+    half = solve(*FOUNDATION, *bonds(100., 1., .01), TANGENTIAL + "free", *NO_HEALING,
+                 "Contact law/Bond shear stiffness=", SUPPORTS + "Displacement tl=" + up,
+                 "Load path/Displacement factors=" + ", ".join(map(repr, STEPS)))["path"]
+    compare("twice the half", two, half, 1e-10, 2.)
+
+
+scenes.together(*((check_.__name__, check_) for check_ in (
+    check_columns, check_pressed, check_layers, check_softening_column, check_oblique,
+    check_strips, check_three_strips, check_paths, check_limits, check_invariances)))
+scenes.end()
