@@ -455,6 +455,73 @@ def check_paths():
               (wanted > 0), path)
 
 
+# Factor, total and dissipated energy of paths in steps of .05 to 1.5 and back, with the mode of
+# the step before; G_II / G_I = 2.5.
+MIXED = {
+    ("bilinear", "benzeggagh-kenane 2"): ((.5, .7646418758813, .327876826541),
+                                          (1., 1.79129897571, .5444400556784),
+                                          (1.5, 3.206485736211, .7357518984634),
+                                          (1., 1.833855826351, .7357518984634),
+                                          (.5, 1.010277880435, .7357518984634)),
+    ("bilinear", "power law 1.3"): ((.5, .7745329679699, .3394058642068),
+                                    (1., 1.833515253619, .5678281732311),
+                                    (1.5, 3.28379650961, .7534779959584),
+                                    (1., 1.878064002026, .7534779959584),
+                                    (.5, 1.034624497475, .7534779959584)),
+    ("winkler", "benzeggagh-kenane 2"): ((.5, .792262515403, .2232679641707),
+                                         (1., 1.878773094976, .3608165412771),
+                                         (1.5, 3.318930453018, .5186433082585),
+                                         (1., 1.763215372596, .5186433082585),
+                                         (.5, .8297863243428, .5186433082585)),
+    ("exponential", "benzeggagh-kenane 2"): ((.5, .747904808009, .3083263003423),
+                                             (1., 1.775771205036, .5441201462348),
+                                             (1.5, 3.197043994055, .7142335619868),
+                                             (1., 1.817704865128, .7142335619868),
+                                             (.5, .9901013877722, .7142335619868))}
+
+
+def check_mixed_mode():
+    scenes.section("Mixed mode")
+    for (law, mode), rows in MIXED.items():
+        k = 500. if (law, mode) == ("bilinear", "benzeggagh-kenane 2") else 100.
+        entries = bonds(k, k if k == 500. else .4 * k, .02)
+        if law == "winkler":
+            entries = bonds(50., 20., .02)
+        else:
+            entries += ["Contact law/Law=" + law, "Contact law/Bond strength=1"]
+        steps = [k * .05 for k in range(1, 31)] + [1., .5]
+        path = solve(*moved_strips(entries, *NO_HEALING, "Contact law/Mixed mode=" + mode,
+                                   "Contact law/Shear fracture energy=0.05", steps=steps))["path"]
+        check(f"{law}, {mode} has all steps", len(path) == len(steps), path)
+        for step, (factor, total, taken) in zip((10, 20, 30, 31, 32), rows):
+            at = f"{law}, {mode}, step {step}"
+            if len(path) == len(steps):
+                close(at + ": total", path[step - 1]["J"], total, 1e-7)
+                close(at + ": dissipated", path[step - 1]["dissipated_energy"], taken, 1e-6)
+    # Bonds that are led with one and the same mode take the energy of that.
+    for mode, energy in (("benzeggagh-kenane 1.7", lambda m: .02 + .03 * m**1.7),
+                         ("power law 1.3", lambda m: ((1 - m)**1.3 / .02**1.3
+                                                      + m**1.3 / .05**1.3)**(-1 / 1.3))):
+        for m in (0., .3, 1.):
+            normal, slip = math.sqrt(1 - m), math.sqrt(m / .4)
+            path = solve("Mesh/Lengths=2, 1", "Mesh/Cells=2, 1", "Material/Young modulus=1e7",
+                         "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=", NODAL,
+                         SUPPORTS + "Contact boundary=bottom", *NO_HEALING,
+                         SUPPORTS + "Displacement top=" + vector(slip, normal),
+                         SUPPORTS + f"Displacement left=free; {normal!r}",
+                         SUPPORTS + f"Displacement right=free; {normal!r}",
+                         *bonds(100., 40., .02), "Contact law/Law=bilinear",
+                         "Contact law/Bond strength=1", "Contact law/Mixed mode=" + mode,
+                         "Contact law/Shear fracture energy=0.05",
+                         "Load path/Displacement factors=0.005, 0.02, 0.2")["path"]
+            check(f"{mode}, {m} has all steps", len(path) == 3, path)
+            close(f"{mode}, {m}: energy", path[-1]["dissipated_energy"] if path else None,
+                  2 * energy(m), 1e-4)
+    errors = solve(*strips("D10", 1.), "Contact law/Mixed mode=power law 1",
+                   "Contact law/Shear fracture energy=0.05")["errors"]
+    check("a single state is refused", "Contact law/Mixed mode" in errors, errors)
+
+
 # ------------------------------------------------------------------ limits and invariances
 
 
@@ -496,6 +563,38 @@ def check_limits():
             check(f"{name}, {kt}: in proportion", last is None or abs(last / off / 100 - 1) < .1,
                   (last, off))
             last = off
+
+
+RINGS = """h = 0.3;
+Point(1) = {1,0,0,h}; Point(2) = {2,0,0,h}; Point(3) = {3,0,0,h};
+Point(4) = {0,1,0,h}; Point(5) = {0,2,0,h}; Point(6) = {0,3,0,h}; Point(7) = {0,0,0,h};
+Circle(1) = {1,7,4}; Circle(2) = {2,7,5}; Circle(3) = {3,7,6};
+Line(4) = {1,2}; Line(5) = {2,3}; Line(6) = {4,5}; Line(7) = {5,6};
+Curve Loop(1) = {4,2,-6,-1}; Plane Surface(1) = {1};
+Curve Loop(2) = {5,3,-7,-2}; Plane Surface(2) = {2};
+Physical Surface("inner") = {1}; Physical Surface("outer") = {2};
+Physical Curve("rim") = {3}; Physical Curve("low") = {4,5};
+"""
+
+
+def check_rings():
+    """Along a curved interface both stiffnesses without end make one body."""
+    scenes.section("Rings")
+    (scenes.directory / "rings.geo").write_text(RINGS)
+    rings = ["Mesh/Source=file", "Mesh/File=rings.geo", "Material/Young modulus=100",
+             "Material/Young modulus outer=300", "Material/Poisson ratio=0.3",
+             SUPPORTS + "Clamped boundaries=low", "Loads/Pressure rim=if(x > y, -1, 0.3)"]
+    for more in ([NODAL], DEGREE_2):
+        one = solve(*rings, *more, SUPPORTS + "Contact boundary=")["functional"]
+        for cuts in ("inner | outer", "outer | inner"):
+            off = []
+            for k in (1e5, 1e7):
+                result = solve(*rings, *more, "Mesh/Cuts=" + cuts, *bonds(k, .7 * k, 1e3),
+                               SUPPORTS + "Contact boundary=cut_1", FROM_REST)
+                off.append(result.get("functional", 0.) / one - 1)
+                check(f"{cuts}, {k}: balance", result["force_imbalance"] < 1e-9)
+            check(f"{cuts}, {more[0]}: one body but for 1 / k", 0 < off[1] < 1e-5
+                  and abs(off[0] / off[1] / 100 - 1) < 0.1, off)
 
 
 def turned(entry, degrees):
@@ -584,5 +683,6 @@ def check_errors():
 
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_columns, check_pressed, check_layers, check_softening_column, check_oblique,
-    check_strips, check_three_strips, check_paths, check_limits, check_invariances, check_errors)))
+    check_strips, check_three_strips, check_paths, check_mixed_mode, check_limits,
+    check_rings, check_invariances, check_errors)))
 scenes.end()
