@@ -544,6 +544,12 @@ namespace Debond
       result.tangential_forces   = at_contact_nodes<dim>(tangential, normals);
       set_reactions(unknowns, clamped, result);
       add_held_forces(unknowns, held_forces, result);
+      const auto &nodes = unknowns.contact().boundary().nodes;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (const auto &tangent : nodes[i].tangents)
+          if (tangent.is_held)
+            result.tangential_forces[i] -=
+              held_forces[tangent.index] * tangent.direction;
 
       // Resultants can vanish where forces do not.
       DofVector all = clamped;

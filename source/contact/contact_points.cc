@@ -44,11 +44,9 @@ namespace Debond
     if (toughness == by_point)
       return;
     toughness = by_point;
-    bonds_of_nodes.clear();
-    bonds_of_held.clear();
-    collect_bonds();
     collect_points();
-    // Between points a node has the bonds of the next one.
+    // Between points a node has the toughness of the next one.
+    toughness_of_nodes.assign(contact.nodes.size(), 1.);
     for (const Face &face : contact.faces)
       for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
         if (!face.is_held(k))
@@ -59,10 +57,7 @@ namespace Debond
             else
               for (const unsigned int end : simplex_edges[k - dim])
                 place[end] = 0.5;
-            BondScale own =
-              field->at(contact.nodes[face.node(k)].position, face.id);
-            own.toughen(toughness[nearest(face, place)]);
-            bonds_of_nodes[face.node(k)] = own;
+            toughness_of_nodes[face.node(k)] = toughness[nearest(face, place)];
           }
   }
 
@@ -166,7 +161,7 @@ namespace Debond
           const Trace shape = bernstein(in_rule.barycentric, contact.degree);
           ContactPoint<dim> point;
           point.weight   = in_rule.weight * face.measure;
-          point.bonds    = bonds_at(face, in_rule.barycentric);
+          point.bonds    = bonds_at_first(face, in_rule.barycentric);
           const auto add = [&](const unsigned int index, const unsigned int k) {
             point.index[point.n_entries] = index;
             point.shape[point.n_entries] = shape[k];
@@ -191,7 +186,8 @@ namespace Debond
             {
               ContactPoint<dim> &at_node = points[point.index[0]];
               point.weight += at_node.weight;
-              point.bonds = bonds_at(point.index[0]);
+              point.bonds =
+                field == nullptr ? BondScale() : bonds_of_nodes[point.index[0]];
               if (!point.shears())
                 {
                   point.slip        = at_node.slip;
@@ -338,12 +334,22 @@ namespace Debond
 
   template <int dim>
   BondScale
-  ContactPoints<dim>::bonds_at(const Face &face, const Barycentric &place) const
+  ContactPoints<dim>::bonds_at_first(const Face        &face,
+                                     const Barycentric &place) const
   {
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
       position += place[k] * face.vertices[k];
-    BondScale bonds = bonds_at(position, face.id);
+    return bonds_at(position, face.id);
+  }
+
+
+
+  template <int dim>
+  BondScale
+  ContactPoints<dim>::bonds_at(const Face &face, const Barycentric &place) const
+  {
+    BondScale bonds = bonds_at_first(face, place);
     if (!toughness.empty())
       bonds.toughen(toughness[nearest(face, place)]);
     return bonds;

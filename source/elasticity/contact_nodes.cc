@@ -139,6 +139,11 @@ namespace Debond
 
     constexpr unsigned int no_node = dealii::numbers::invalid_unsigned_int;
 
+    /// The cosine to a normal up to which a direction counts as along the
+    /// boundary: planes of symmetry meet the mean normal of a polygon at up to
+    /// half of its largest angle (VertexNormals).
+    constexpr double most_inclined = 0.28;
+
 
 
     /// Goes from the faces to their vertices, from these to contact nodes, and
@@ -469,10 +474,12 @@ namespace Debond
         // What supports prescribe has to be along the boundary or across it.
         // Across it the frame is still to be made, as nothing is unknown there
         // but what bonds shear.
-        const bool is_held = std::any_of(
-          prescribed.rows.begin(), prescribed.rows.end(), [&](const auto &row) {
-            return std::abs(row.direction * normal) > Tolerance::free_normal;
-          });
+        const bool is_held =
+          std::any_of(prescribed.rows.begin(),
+                      prescribed.rows.end(),
+                      [&](const auto &row) {
+                        return std::abs(row.direction * normal) > most_inclined;
+                      });
         if (is_held && !is_normal_known)
           throw SupportError(SupportError::Subject::displacement,
                              node_supports.names()[prescribed.rows[0].support],

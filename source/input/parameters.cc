@@ -522,10 +522,10 @@ namespace Debond
         return;
       const PiecewiseEnergy pieces(p.law.pieces);
       refuse(
-        {{pieces[0].slope != 0.,
+        {{pieces[0].slope != 0. ||
+            (pieces[0].curvature == 0. && pieces.size() > 1),
           tangential,
-          "bonded needs bonds that are springs at first, these pull at "
-          "rest"},
+          "bonded needs bonds that are springs at first"},
          {p.shear.breaks_separately && std::isinf(pieces.largest_value()),
           failure,
           "separate needs bonds that break"},

@@ -121,13 +121,14 @@ namespace Debond
     {
       StationaryPath::Problem problem =
         scene.between(last.factors, next, 1., bonds);
-      const Eigen::SparseMatrix<double> springs   = bonds.curvature(last.s);
+      const AdhesionIntegral<dim> here = bonds.at(last.factors.displacements);
+      const Eigen::SparseMatrix<double> springs   = here.curvature(last.s);
       Eigen::MatrixXd                   stiffness = problem.S;
       stiffness += springs;
       // The bonds on their pieces are part of stiffness and load, so that the
       // path itself has no law and only contact makes its breakpoints.
       const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
-      problem.load += springs * last.s - bonds.subgradient(last.s);
+      problem.load += springs * last.s - here.subgradient(last.s);
       // Displacements along tangents have no bound and follow from the others
       // at each t.
       const Eigen::Index    n = bonds.n_nodes(), m = last.s.size() - n;

@@ -274,12 +274,13 @@ namespace Debond
       }
     // The functional of the paper on all unknowns, for its bundle method;
     // condensed methods make theirs of S and g.
-    energy = std::make_unique<Functional>(
+    const auto &dofs = elastic_problem->unknowns().contact().dofs();
+    energy           = std::make_unique<Functional>(
       [this](DofVector &dst, const DofVector &src) {
         elastic_problem->vmult(dst, src);
       },
       elastic_problem->load(),
-      elastic_problem->unknowns().contact().bounds().indices,
+      std::vector<unsigned int>(dofs.begin(), dofs.end()),
       *adhesion_integral);
   }
 

@@ -116,7 +116,17 @@ namespace Debond
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }
-    conditions.tangential_displacement = given.tangential_displacement;
+    // Bonds without stiffness leave the body free to slide.
+    const auto or_free = [&](const TangentialDisplacement wanted) {
+      double     stiffness;
+      const bool is_none =
+        given.law.pieces[0].curvature == 0. ||
+        (read_number(given.shear.stiffness, stiffness) && stiffness == 0.);
+      return wanted == TangentialDisplacement::bonded && is_none ?
+               TangentialDisplacement::free :
+               wanted;
+    };
+    conditions.tangential_displacement = or_free(given.tangential_displacement);
     const auto &own                    = given.tangential_displacements;
     for_contact_boundaries(
       given,
@@ -127,7 +137,7 @@ namespace Debond
         conditions.own_tangential_displacements[id] =
           word == "fixed" ? TangentialDisplacement::fixed :
           word == "free"  ? TangentialDisplacement::free :
-                            TangentialDisplacement::bonded;
+                            or_free(TangentialDisplacement::bonded);
       });
     return conditions;
   }
@@ -238,9 +248,9 @@ namespace Debond
       if (conditions.tangential(id) == TangentialDisplacement::bonded)
         shear.boundaries.insert(id);
     double number;
-    if (read_number(given.shear.stiffness, number))
+    if (!shear.boundaries.empty() && read_number(given.shear.stiffness, number))
       shear.stiffness = number / law.second_derivative(0.);
-    if (read_number(given.shear.energy, number))
+    if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
       {
         const double ratio = number / law.pieces().largest_value();
         const double power = given.shear.exponent;

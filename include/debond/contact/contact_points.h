@@ -220,7 +220,10 @@ namespace Debond
     BondScale
     bonds_at(const unsigned int node) const
     {
-      return field == nullptr ? BondScale() : bonds_of_nodes[node];
+      BondScale bonds = field == nullptr ? BondScale() : bonds_of_nodes[node];
+      if (!toughness_of_nodes.empty())
+        bonds.toughen(toughness_of_nodes[node]);
+      return bonds;
     }
 
     /// The coefficients of the displacement on a face, see bernstein().
@@ -265,6 +268,10 @@ namespace Debond
     void
     separate_shear();
 
+    /// The bonds at a place with the energy of opening.
+    BondScale
+    bonds_at_first(const Face &face, const Barycentric &place) const;
+
     /// Makes bonds_of_nodes and bonds_of_held.
     void
     collect_bonds();
@@ -280,7 +287,7 @@ namespace Debond
     std::vector<BondScale> bonds_of_nodes, bonds_of_held;
 
     double              load_factor = 1.;
-    std::vector<double> toughness;
+    std::vector<double> toughness, toughness_of_nodes;
 
     std::vector<ContactPoint<dim>> points;
     std::vector<unsigned int>      places; ///< in `points`, face by face

@@ -77,8 +77,8 @@ namespace Debond
     UpperBounds
     bounds() const
     {
-      const Eigen::VectorXd upper = nodes_and_faces.upper_bounds();
-      return {{all_dofs.begin(), all_dofs.end()}, {upper.begin(), upper.end()}};
+      return {{normals.begin(), normals.end()},
+              std::vector<double>(normals.size(), 0.)};
     }
 
     /// Returns whether u satisfies them.
