@@ -66,7 +66,7 @@ namespace Debond
         const Eigen::VectorXd given            = s;
         const double          given_functional = result.functional;
         NodeSet               all;
-        for (unsigned int i = 0; i < s.size(); ++i)
+        for (unsigned int i = 0; i < problem.lumped.f.size(); ++i)
           all.insert(all.end(), i);
         // All nodes on the last piece, the one before, and so on, and all on
         // the first: minima with much or little broken, far from the given one.
@@ -164,7 +164,9 @@ namespace Debond
         if (parameters.maximum_shift == 0)
           return false;
         for (const PieceMove &move :
-             moves_by_stretch(problem.lumped.state(point), point, n_pieces))
+             moves_by_stretch(problem.lumped.state(point),
+                              problem.lumped.stretches(point),
+                              n_pieces))
           if (!may_go_on())
             return false;
           else if (attempt(move, MoveKind::stretch, point))
@@ -195,14 +197,18 @@ namespace Debond
         // The nodes of the move go inside the piece, from where majorise-
         // minimise takes them to a minimum that has them there, if there is
         // one.
-        Eigen::VectorXd next = point;
+        Eigen::VectorXd       next = point;
+        const Eigen::VectorXd l    = problem.lumped.stretches(point);
         // Where there are no bonds no piece is to be left.
         for (const unsigned int i : move.down)
           if (move.piece < f[i].size())
-            next(i) = std::min(next(i), f[i].point_inside(move.piece));
+            problem.lumped.set_stretch(
+              i, std::min(l(i), f[i].point_inside(move.piece)), next);
         for (const unsigned int i : move.up)
           if (move.piece < f[i].size())
-            next(i) = std::max(next(i), f[i].point_inside(move.piece - 1));
+            problem.lumped.set_stretch(
+              i, std::max(l(i), f[i].point_inside(move.piece - 1)), next);
+        next = next.cwiseMin(problem.upper);
         // A state that has been tried leads where it led before.
         const PieceState start = problem.lumped.state(next);
         // Where points between the nodes have laws, a node's state says little

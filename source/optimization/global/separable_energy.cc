@@ -2,15 +2,49 @@
 #include <debond/optimization/global/separable_energy.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Debond
 {
+  Eigen::VectorXd
+  SeparableEnergy::stretches(const VectorView &s) const
+  {
+    if (bonds.empty())
+      return s;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(f.size());
+    for (unsigned int j = 0; j < s.size(); ++j)
+      squares(bonds[j]) += weights(j) * s(j) * s(j);
+    return -squares.cwiseSqrt();
+  }
+
+
+
+  void
+  SeparableEnergy::set_stretch(const unsigned int i,
+                               const double       stretch,
+                               Eigen::VectorXd   &s) const
+  {
+    if (bonds.empty())
+      {
+        s(i) = stretch;
+        return;
+      }
+    const double before = stretches(s)(i);
+    for (unsigned int j = 0; j < s.size(); ++j)
+      if (bonds[j] == i)
+        s(j) = before < 0. ? s(j) * stretch / before :
+                             stretch / std::sqrt(weights(j));
+  }
+
+
+
   PieceState
   SeparableEnergy::state(const VectorView &s) const
   {
-    PieceState result(s.size());
-    for (unsigned int i = 0; i < s.size(); ++i)
-      result[i] = piece(i, s).number;
+    const Eigen::VectorXd l = stretches(s);
+    PieceState            result(l.size());
+    for (unsigned int i = 0; i < l.size(); ++i)
+      result[i] = piece(i, l).number;
     return result;
   }
 
@@ -21,9 +55,10 @@ namespace Debond
   {
     // With nodal quadrature Phi is a sum of functions of one component each, so
     // that pieces, derivatives and bounds are those of single bonds.
-    double sum = 0.;
-    for (unsigned int i = 0; i < s.size(); ++i)
-      sum += piece(i, s).value(s(i));
+    const Eigen::VectorXd l   = stretches(s);
+    double                sum = 0.;
+    for (unsigned int i = 0; i < l.size(); ++i)
+      sum += piece(i, l).value(l(i));
     return sum;
   }
 
@@ -32,6 +67,9 @@ namespace Debond
   Eigen::VectorXd
   SeparableEnergy::subgradient(const VectorView &s) const
   {
+    // Pieces that are quadratic in all unknowns of a bond have no linear terms.
+    if (!bonds.empty())
+      return curvature(s) * s;
     Eigen::VectorXd xi(s.size());
     for (unsigned int i = 0; i < s.size(); ++i)
       xi(i) = piece(i, s).derivative(s(i));
@@ -45,10 +83,14 @@ namespace Debond
   {
     // Entries that are zero are left out, as broken bonds are many and products
     // with them take time.
+    const Eigen::VectorXd       l = stretches(s);
     Eigen::SparseMatrix<double> result(s.size(), s.size());
-    for (unsigned int i = 0; i < s.size(); ++i)
-      if (const double c = f[i].majorant_curvature(s(i)); c != 0.)
-        result.insert(i, i) = c;
+    for (unsigned int j = 0; j < s.size(); ++j)
+      {
+        const unsigned int i = bonds.empty() ? j : bonds[j];
+        if (const double c = f[i].majorant_curvature(l(i)); c != 0.)
+          result.insert(j, j) = bonds.empty() ? c : c * weights(j);
+      }
     return result;
   }
 
@@ -67,8 +109,12 @@ namespace Debond
   bool
   SeparableEnergy::is_piecewise_quadratic() const
   {
-    return std::all_of(f.begin(), f.end(), [](const PiecewiseEnergy &f_i) {
-      return f_i.is_piecewise_quadratic();
+    // With a slope a piece is no quadratic in the unknowns of a bond, of which
+    // the stretch is a square root.
+    return std::all_of(f.begin(), f.end(), [&](const PiecewiseEnergy &f_i) {
+      const bool is_spring = f_i.size() <= 2 && f_i[0].slope == 0. &&
+                             (f_i.size() == 1 || f_i[1].is_flat());
+      return f_i.is_piecewise_quadratic() && (bonds.empty() || is_spring);
     });
   }
 

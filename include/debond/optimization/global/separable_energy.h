@@ -14,20 +14,39 @@ namespace Debond
 
 
 
-  /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own.
+  /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own. With @p bonds
+  /// it is sum_i f_i(l_i) with the stretches of bonds that each have some of
+  /// the unknowns; then its values and derivatives are those of laws that are
+  /// is_piecewise_quadratic().
   struct SeparableEnergy : public PiecewiseQuadratic
   {
     std::vector<PiecewiseEnergy> f;
+
+    /// The bond of each unknown, and its part in l = -sqrt(sum weight s^2),
+    /// which is positive.
+    std::vector<unsigned int> bonds;
+    Eigen::VectorXd           weights;
 
     explicit SeparableEnergy(const std::vector<PiecewiseEnergy> &f)
       : f(f)
     {}
 
-    /// The piece that unknown i is on.
+    /// What f_i is a function of: s itself without bonds.
+    Eigen::VectorXd
+    stretches(const VectorView &s) const;
+
+    /// Gives bond i a stretch: its unknowns keep their ratios or, if all are
+    /// zero, the first of them takes it.
+    void
+    set_stretch(const unsigned int i,
+                const double       stretch,
+                Eigen::VectorXd   &s) const;
+
+    /// The piece that bond i is on at the stretches @p l.
     const PiecewiseEnergy::Piece &
-    piece(const unsigned int i, const VectorView &s) const
+    piece(const unsigned int i, const VectorView &l) const
     {
-      return f[i][f[i].index(s(i))];
+      return f[i][f[i].index(l(i))];
     }
 
     PieceState
@@ -53,7 +72,8 @@ namespace Debond
                  const VectorView &ds,
                  const double      limit) const override;
 
-    /// Returns whether all pieces are quadratic.
+    /// Returns whether all pieces are quadratic in the unknowns; with bonds,
+    /// whether these are springs that lose their stiffness at once as well.
     bool
     is_piecewise_quadratic() const;
 
