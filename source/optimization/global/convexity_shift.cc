@@ -17,12 +17,11 @@ namespace Debond
     /// The part of a coordinate's step that is done.
     constexpr double step_share = 0.7;
 
-  } // namespace
+    /// What is refused is tried again with this part of it.
+    constexpr double retreat = 0.7;
 
 
 
-  namespace
-  {
     /// The factor of A less a shift that covers its rounding. The bound of Rump
     /// does not change if rows and columns are scaled, so that a shift in
     /// proportion to each entry of the diagonal will do.
@@ -75,6 +74,28 @@ namespace Debond
         lambda = v.norm();
       }
     return lambda > 0. ? 1. / lambda : infinity;
+  }
+
+
+
+  std::optional<Eigen::MatrixXd>
+  take_shift(const double trace, Eigen::MatrixXd &A, Eigen::VectorXd &shift)
+  {
+    // A less the shift has to stay positive definite beyond doubt.
+    // Factorisations decide; what is refused is tried with less.
+    while (true)
+      {
+        Eigen::MatrixXd rest = A;
+        rest.diagonal() -= shift;
+        auto inverse = safe_inverse(rest);
+        if (inverse)
+          A.swap(rest);
+        if (inverse || shift.isZero(0.))
+          return inverse;
+        shift *= retreat;
+        if (shift.maxCoeff() < Tolerance::epsilon * trace)
+          shift.setZero();
+      }
   }
 
 

@@ -15,9 +15,6 @@ namespace Debond
     /// first relaxation of a node. What is left has to shrink its box.
     constexpr double first_share = 0.5;
 
-    /// What is refused is tried again with this part of it.
-    constexpr double retreat = 0.7;
-
     /// Relaxations of a node, and of the first.
     constexpr unsigned int n_rounds      = 6;
     constexpr unsigned int n_root_rounds = 30;
@@ -204,24 +201,10 @@ namespace Debond
             shift =
               first_share * largest_multiple(*inverse_of_A, weights) * weights;
           }
-        // A less the shift has to stay positive definite beyond doubt.
-        // Factorisations decide; what is refused is tried with less.
-        while (true)
-          {
-            Eigen::MatrixXd rest = problem.A;
-            rest.diagonal() -= shift;
-            if (auto inverse_of_rest = safe_inverse(rest))
-              {
-                problem.A.swap(rest);
-                inverse = *inverse_of_rest;
-                break;
-              }
-            if (shift.isZero(0.))
-              return false;
-            shift *= retreat;
-            if (shift.maxCoeff() < Tolerance::epsilon * S.trace())
-              shift.setZero();
-          }
+        auto inverse_of_rest = take_shift(S.trace(), problem.A, shift);
+        if (!inverse_of_rest)
+          return false;
+        inverse.swap(*inverse_of_rest);
         // The convexity that a term has is what A has lost to the last digit,
         // so that the sum is the functional itself.
         envelopes.clear();
@@ -364,12 +347,16 @@ namespace Debond
                                          Eigen::VectorXd(),
                                          upper};
     // Within this distance of s_0 by the energy, and a little more.
-    const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
-    without_phi.lower =
-      (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
-               (1. + Tolerance::outwards))
-        .cwiseMin(upper);
+    const double          distance = 2. * (best_value + 0.5 * g.dot(s_0));
+    const Eigen::VectorXd radius =
+      (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
+      (1. + Tolerance::outwards);
+    without_phi.lower = (s_0 - radius).cwiseMin(upper);
     without_phi.lower -= Tolerance::outwards * without_phi.lower.cwiseAbs();
+    for (unsigned int i = 0; i < n; ++i)
+      if (std::isinf(upper(i)))
+        without_phi.upper(i) =
+          s_0(i) + radius(i) + Tolerance::outwards * std::abs(s_0(i));
 
     ProofNode node;
     node.number = 0;

@@ -33,6 +33,15 @@ namespace Debond
 
 
 
+  /// Takes the shift, or what a few retreats leave of it, from the diagonal of
+  /// A and returns the safe_inverse() of the rest; nothing if A has none
+  /// itself. A shift within the rounding of a matrix with the trace @p trace is
+  /// none.
+  std::optional<Eigen::MatrixXd>
+  take_shift(const double trace, Eigen::MatrixXd &A, Eigen::VectorXd &shift);
+
+
+
   /**
    * Changes the diagonal D, which is moved from A into the terms of a
    * relaxation, towards a higher bound L(D), the minimum of the relaxation. L

@@ -106,7 +106,7 @@ namespace Debond
     std::vector<NodeBall>
     balls(const ProofNode &node) const;
 
-  private:
+  protected:
     const SeparableEnergy &phi;
     const unsigned int     n;
     Eigen::MatrixXd        S;
