@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interruption.h>
 #include <debond/base/processes.h>
+#include <debond/optimization/global/bond_bound.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -45,6 +46,8 @@ namespace Debond
 
 
 
+    /// @p Bound is NodeBound, or has its functions.
+    template <typename Bound>
     class ProofTree
     {
     public:
@@ -142,7 +145,7 @@ namespace Debond
       const BranchAndBoundParameters &parameters;
       const SeparableProblem         &problem;
       const unsigned int              n;
-      const NodeBound                 node_bound;
+      const Bound                     node_bound;
 
       const Clock::time_point begin = Clock::now();
       BranchAndBoundResult    result;
@@ -313,6 +316,8 @@ namespace Debond
                    const SeparableProblem         &problem,
                    const VectorView               &start)
   {
-    return ProofTree(parameters, problem, start).run();
+    if (!problem.phi.bonds.empty())
+      return ProofTree<BondBound>(parameters, problem, start).run();
+    return ProofTree<NodeBound>(parameters, problem, start).run();
   }
 } // namespace Debond

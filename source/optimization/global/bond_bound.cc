@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interruption.h>
+#include <debond/base/tolerances.h>
+#include <debond/optimization/global/bond_bound.h>
+#include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/majorise/bound_qp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The part of the convexity of S that goes to bonds without a state.
+    constexpr double share_of_bonds = 0.7;
+
+    /// Steps to a point, of which any has a bound: more raise it by little.
+    constexpr unsigned int reweightings = 4;
+
+
+
+    /// A bound of states that a node has not, above all energies.
+    constexpr double excluded = 1e300;
+
+
+
+    /// The relaxation of a node.
+    struct BondRelaxation
+    {
+      const SeparableEnergy &phi;
+      const Eigen::VectorXd &g;
+      ProofNode             &node;
+      Eigen::MatrixXd        A;
+      const unsigned int     n = static_cast<unsigned int>(g.size());
+      Eigen::VectorXd        D = Eigen::VectorXd::Zero(n);
+
+      /// The stiffness that unknowns lose if their bond, which may hold or be
+      /// broken, breaks.
+      Eigen::VectorXd k = Eigen::VectorXd::Zero(n);
+
+      /// Bounds with a bond, by row, that holds or is broken. The third column
+      /// has the value of its term at x in place of the least one.
+      Eigen::MatrixXd bounds = {};
+
+      bool
+      is_decided(const unsigned int bond) const
+      {
+        return node.upper(n + bond) - node.lower(n + bond) < 1.;
+      }
+
+      /// Sets k and adds the stiffness of bonds that hold to A.
+      void
+      decide()
+      {
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const unsigned int i   = phi.bonds[j];
+            const double stiffness = phi.weights(j) * phi.f[i][0].curvature;
+            if (!is_decided(i))
+              k(j) = stiffness;
+            else if (node.lower(n + i) == 0.)
+              // Rounded down, A gives a bound all the same.
+              A(j, j) = std::nextafter(A(j, j) + stiffness, A(j, j));
+          }
+      }
+
+      /// Moves x towards the minimum with convex functions below the terms.
+      void
+      minimise(const Eigen::VectorXd &upper)
+      {
+        // On the ball about 0 that has the box inside, with the radius R, the
+        // envelope of the lesser of (k + D)/2 l^2 and k/2 m^2 + D/2 l^2 is a
+        // parabola, a line that touches both or meets the second one at R, and
+        // a parabola again. One about 0 that touches the envelope is above it.
+        const Eigen::VectorXd R =
+          phi.stretches(node.lower.head(n).cwiseAbs().cwiseMax(
+            node.upper.head(n).cwiseAbs()));
+        ActiveSet active(n, 0);
+        for (unsigned int step = 0; step < reweightings; ++step)
+          {
+            const Eigen::VectorXd l = phi.stretches(node.x);
+            Eigen::MatrixXd       M = A;
+            for (unsigned int j = 0; j < n; ++j)
+              if (k(j) > 0.)
+                {
+                  const unsigned int i = phi.bonds[j];
+                  const double       d = D(j) / k(j), m = phi.f[i][0].lower,
+                               end = std::max(R(i), m * std::sqrt(1. + 1. / d)),
+                               slope = (1. + d) * end +
+                                       std::sqrt(std::max(
+                                         0., (1. + d) * (end * end - m * m)));
+                  M(j, j) += k(j) * std::clamp(slope / l(i), d, 1. + d);
+                }
+            node.x = solve_bound_qp(M, g, upper, active).x;
+          }
+      }
+
+      /// Sets the bounds and returns that without a choice.
+      double
+      set_bounds()
+      {
+        // What cancels is summed in extended precision, and what rounding can
+        // do is taken from the sums as in LowerBound.
+        using LongVector    = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+        const LongVector x  = node.x.cast<long double>(),
+                         Ax = A.cast<long double>() * x,
+                         terms =
+                           A.cwiseAbs().cast<long double>() * x.cwiseAbs();
+        const long double tiny =
+          (n + 16.) * std::numeric_limits<long double>::epsilon();
+        const Eigen::VectorXd r = (Ax - g.cast<long double>()).cast<double>(),
+                              error = Tolerance::epsilon *
+                                        (r.cwiseAbs() + g.cwiseAbs()) +
+                                      (tiny * terms).cast<double>(),
+                              l = phi.stretches(node.x);
+        double size             = static_cast<double>(x.dot(Ax));
+        bounds.resize(phi.f.size(), 3);
+        for (unsigned int i = 0; i < phi.f.size(); ++i)
+          bounds.row(i) << excluded * node.lower(n + i),
+            phi.f[i].size() == 1 || node.upper(n + i) < 1. ?
+              excluded :
+              phi.f[i].largest_value(),
+            phi.f[i].value(l(i));
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const unsigned int i = phi.bonds[j];
+            bounds(i, 2) += node.x(j) * (r(j) + 0.5 * D(j) * node.x(j));
+            for (const int broken : {0, 1})
+              {
+                // The least value is concave in r, so that the least one for
+                // all that r can be is at an end.
+                const auto least_with = [&](const double r_j) {
+                  return Growth{0., 0., r_j, D(j) + (1 - broken) * k(j)}.least(
+                    {node.lower(j), node.upper(j)});
+                };
+                const double least = std::min(least_with(r(j) - error(j)),
+                                              least_with(r(j) + error(j)));
+                bounds(i, broken) += least;
+                size += std::abs(least);
+              }
+          }
+        const Eigen::VectorXd least = bounds.leftCols(2).rowwise().minCoeff();
+        const double          sum =
+          static_cast<double>(-0.5L * x.dot(Ax) -
+                              tiny * x.cwiseAbs().dot(terms)) +
+          least.sum() -
+          (4. * n + 16.) * Tolerance::epsilon * (size + least.cwiseAbs().sum());
+        bounds.colwise() += (sum - least.array()).matrix();
+        bounds -= 4. * Tolerance::epsilon * bounds.cwiseAbs();
+        return bounds.row(0).head(2).minCoeff();
+      }
+    };
+  } // namespace
+
+
+
+  std::optional<ProofNode>
+  BondBound::root(const double best_value) const
+  {
+    auto node = NodeBound::root(best_value);
+    if (!node)
+      return {};
+    const Eigen::Index size = n + static_cast<Eigen::Index>(phi.f.size());
+    node->lower.conservativeResizeLike(Eigen::VectorXd::Zero(size));
+    node->upper.conservativeResizeLike(Eigen::VectorXd::Ones(size));
+    node->bound = BondRelaxation{phi, g, *node, S}.set_bounds();
+    return node;
+  }
+
+
+
+  double
+  BondBound::bound_at(const Eigen::VectorXd &z) const
+  {
+    auto node = root(z.dot(0.5 * S * z - g) + phi.change(z));
+    if (!node)
+      return -infinity;
+    node->x                   = z;
+    BondRelaxation relaxation = {phi, g, *node, S};
+    relaxation.decide();
+    // As in NodeBound::bound_at(): a function of l is nowhere below its tangent
+    // plane if it is not below the tangent in the direction of z.
+    const Eigen::VectorXd before = relaxation.A.diagonal(),
+                          l      = phi.stretches(z);
+    for (unsigned int j = 0; j < n; ++j)
+      relaxation.A(j, j) -=
+        (1. + Tolerance::excess_at_point) * phi.weights(j) *
+          phi.f[phi.bonds[j]].needed_convexity(l(phi.bonds[j])) +
+        Tolerance::floor_at_point * std::min(relaxation.k(j), S(j, j));
+    relaxation.D = before - relaxation.A.diagonal();
+    return is_safely_positive_definite(relaxation.A) ? relaxation.set_bounds() :
+                                                       -infinity;
+  }
+
+
+
+  NodeResult
+  BondBound::bound(ProofNode   &node,
+                   const double best_value,
+                   const double tolerance) const
+  {
+    NodeResult result;
+    while (!Interruption::noticed())
+      {
+        BondRelaxation relaxation = {phi, g, node, S};
+        relaxation.decide();
+        auto inverse = safe_inverse(relaxation.A);
+        if (!inverse)
+          break;
+        // The same part of all that A can spare, in proportion to the need.
+        const bool all_decided = relaxation.k.isZero(0.);
+        if (!all_decided)
+          {
+            const Eigen::VectorXd before = relaxation.A.diagonal();
+            Eigen::VectorXd       shift  = share_of_bonds *
+                                    largest_multiple(*inverse, relaxation.k) *
+                                    relaxation.k;
+            inverse      = take_shift(S.trace(), relaxation.A, shift);
+            relaxation.D = before - relaxation.A.diagonal();
+          }
+        relaxation.minimise(upper);
+        const double value = relaxation.set_bounds();
+        node.bound         = std::max(node.bound, value);
+        if (node.bound >= best_value - tolerance || all_decided)
+          break;
+
+        // Points below the best value are near x, and their bonds in states
+        // that the box has a part of and with bounds below it.
+        const Eigen::VectorXd radius =
+          (1. + Tolerance::outwards) *
+          (2. * (best_value - value) * inverse->diagonal()).cwiseSqrt();
+        node.lower.head(n) = node.lower.head(n).cwiseMax(node.x - radius);
+        node.upper.head(n) = node.upper.head(n).cwiseMin(node.x + radius);
+        const Eigen::VectorXd nearest = phi.stretches(
+          node.lower.head(n).cwiseMax(-node.upper.head(n)).cwiseMax(0.));
+        const Eigen::MatrixXd &bounds  = relaxation.bounds;
+        double                 highest = -infinity;
+        bool                   is_new  = false;
+        for (unsigned int i = 0; i < phi.f.size(); ++i)
+          if (!relaxation.is_decided(i))
+            {
+              if (bounds(i, 0) > best_value || nearest(i) < phi.f[i][0].lower)
+                node.lower(n + i) = 1.;
+              if (bounds(i, 1) > best_value)
+                node.upper(n + i) = 0.;
+              is_new = is_new || relaxation.is_decided(i);
+              // The term that is farthest above its least value.
+              if (bounds(i, 2) > highest)
+                {
+                  highest = bounds(i, 2);
+                  result  = {n + i, 0.5, {{bounds(i, 1), bounds(i, 0)}}, 0.};
+                }
+            }
+        if (!is_new)
+          return result;
+        result = {};
+        if ((node.lower - node.upper).maxCoeff() > 0.)
+          {
+            node.bound = best_value;
+            break;
+          }
+      }
+    result.least = node.bound;
+    return result;
+  }
+} // namespace Debond
