@@ -89,10 +89,12 @@ least_branch(const Debond::PiecewiseEnergy &f, const long double s)
 
 
 
-/// For s <= 0 of 1/2 s'A s - g's, by principal pivoting.
+/// For s <= upper, which is 0 or infinite, of 1/2 s'A s - g's, by principal
+/// pivoting.
 inline LongVector
 pivoted_minimiser(const LongMatrix  &A,
                   const LongVector  &g,
+                  const Vector      &upper,
                   std::vector<char> &active)
 {
   const unsigned int n = g.size();
@@ -113,7 +115,7 @@ pivoted_minimiser(const LongMatrix  &A,
         }
       const LongVector mu = g - A * s;
       unsigned int     i  = 0;
-      while (i < n && !(active[i] != 0 ? mu(i) < 0. : s(i) > 0.))
+      while (i < n && !(active[i] != 0 ? mu(i) < 0. : s(i) > upper(i)))
         ++i;
       if (i == n)
         return s;
@@ -129,16 +131,30 @@ struct Problem
   Eigen::MatrixXd         S;
   Vector                  g;
   Debond::SeparableEnergy phi;
+  Vector                  upper = Vector::Zero(g.size());
 
   /// What the methods take.
   operator Debond::PiecewiseProblem() const
   {
-    return {S, g, Vector::Zero(g.size()), phi};
+    return {S, g, upper, phi};
   }
 
   operator Debond::SeparableProblem() const
   {
-    return {S, g, Vector::Zero(g.size()), phi};
+    return {S, g, upper, phi};
+  }
+
+  /// The bond of an unknown, and its weight there.
+  unsigned int
+  bond(const unsigned int j) const
+  {
+    return phi.bonds.empty() ? j : phi.bonds[j];
+  }
+
+  double
+  weight(const unsigned int j) const
+  {
+    return phi.bonds.empty() ? 1. : phi.weights(j);
   }
 
   /// As exact as a double can be: bounds come close to it.
@@ -148,8 +164,16 @@ struct Problem
     const LongVector s_long = s.cast<long double>();
     long double      sum = s_long.dot(0.5L * (S.cast<long double>() * s_long) -
                                  g.cast<long double>());
-    for (unsigned int i = 0; i < s.size(); ++i)
-      sum += least_branch(phi.f[i], s_long(i));
+    LongVector       l   = s_long;
+    if (!phi.bonds.empty())
+      {
+        l = LongVector::Zero(phi.f.size());
+        for (unsigned int j = 0; j < s.size(); ++j)
+          l(bond(j)) += weight(j) * s_long(j) * s_long(j);
+        l = -l.cwiseSqrt();
+      }
+    for (unsigned int i = 0; i < l.size(); ++i)
+      sum += least_branch(phi.f[i], l(i));
     return sum;
   }
 
@@ -157,23 +181,24 @@ struct Problem
   long double
   enumerated_minimum(LongVector &where) const
   {
-    const unsigned int        n = g.size();
+    const unsigned int        n = phi.f.size();
     std::vector<unsigned int> choice(n, 0);
-    std::vector<char>         active(n, 0);
+    std::vector<char>         active(g.size(), 0);
     long double least = std::numeric_limits<long double>::infinity();
     while (true)
       {
         LongMatrix  A        = S.cast<long double>();
         LongVector  load     = g.cast<long double>();
         long double constant = 0.L;
-        for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < g.size(); ++j)
           {
-            const auto &b = phi.f[i][choice[i]];
-            A(i, i) += b.curvature;
-            load(i) -= b.slope;
-            constant += b.constant;
+            const auto &b = phi.f[bond(j)][choice[bond(j)]];
+            A(j, j) += b.curvature * weight(j);
+            load(j) -= b.slope;
           }
-        const LongVector  s     = pivoted_minimiser(A, load, active);
+        for (unsigned int i = 0; i < n; ++i)
+          constant += phi.f[i][choice[i]].constant;
+        const LongVector  s     = pivoted_minimiser(A, load, upper, active);
         const long double value = s.dot(0.5L * (A * s) - load) + constant;
         if (value < least)
           {
