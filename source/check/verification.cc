@@ -161,9 +161,7 @@ namespace Debond
           // and it is another one of bonds that break separately.
           BondScale shear = bonds;
           if (bonds.shear_energy > 0.)
-            shear = {bonds.shear_energy,
-                     bonds.stretch * std::sqrt(bonds.shear_energy /
-                                               (bonds.shear * bonds.energy))};
+            shear = bonds.in_shear();
           else if (bonds.shear > 0.)
             shear.stretch /= std::sqrt(bonds.shear);
           for (const auto &tangent : node.tangents)

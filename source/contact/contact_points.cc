@@ -267,11 +267,7 @@ namespace Debond
           ContactPoint<dim> &normal = points[q];
           ContactPoint<dim>  shear;
           shear.weight = normal.weight;
-          shear.bonds  = {bonds.shear_energy,
-                          bonds.stretch *
-                            std::sqrt(bonds.shear_energy /
-                                     (bonds.shear * bonds.energy)),
-                          1.};
+          shear.bonds  = bonds.in_shear();
           std::swap(shear.slip, normal.slip);
           std::swap(shear.held_slip, normal.held_slip);
           std::swap(shear.slip_offset, normal.slip_offset);

@@ -517,6 +517,8 @@ namespace Debond
                 const unsigned int node  = vertex.nodes[group];
                 face_node = node == no_node ? no_node : place[node];
                 face_held = vertex.held[group];
+                if (node == no_node)
+                  boundary.held_vertices[face_held].boundary = faces[f].id;
               }
             boundary.faces.push_back(face);
           }

@@ -521,6 +521,8 @@ namespace Debond
       if (p.law.pieces.empty())
         return;
       const PiecewiseEnergy pieces(p.law.pieces);
+      const bool            breaks_at_once =
+        pieces.size() == 1 || (pieces.size() == 2 && pieces[1].is_flat());
       refuse(
         {{pieces[0].slope != 0. ||
             (pieces[0].curvature == 0. && pieces.size() > 1),
@@ -546,10 +548,12 @@ namespace Debond
          {p.certificate.kind != CertificateKind::none,
           "Certificate/Kind",
           "needs bonds along the normal alone"},
-         {p.solver.prove, "Solver/Prove", "needs bonds along the normal alone"},
-         {p.load_path.global_branch == GlobalBranch::prove,
+         {p.solver.prove && !breaks_at_once,
+          "Solver/Prove",
+          "needs Law = winkler where bonds shear"},
+         {p.load_path.global_branch == GlobalBranch::prove && !breaks_at_once,
           "Load path/Global branch",
-          "needs bonds along the normal alone"}},
+          "needs Law = winkler where bonds shear, to prove it"}},
         {tangential},
         table);
     }

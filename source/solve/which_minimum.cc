@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace Debond
 {
@@ -56,6 +57,94 @@ namespace Debond
 
 
 
+    /// The energy with a law of its own for each node, and where bonds shear
+    /// for the unknowns of each: what Phi is with bonds at nodes. Bonds of
+    /// shear alone follow those of the nodes, and are added to @p graph.
+    template <int dim>
+    SeparableEnergy
+    lumped_bonds(const AdhesionIntegral<dim> &adhesion, NeighbourGraph &graph)
+    {
+      const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
+      const Eigen::VectorXd  weights = lumped_weights(adhesion);
+      if (!adhesion.shears())
+        return lumped_energy(pieces, weights, stretches(adhesion));
+      const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
+      const unsigned int          n        = adhesion.n_nodes();
+      SeparableEnergy             result =
+        lumped_energy(pieces, weights.head(n), stretches(adhesion));
+      result.bonds.resize(weights.size());
+      std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
+      result.weights = Eigen::VectorXd::Ones(weights.size());
+      std::vector<unsigned int> shear_bonds(n, 0); // of nodes, 0 is none
+      const auto                add = [&](const auto      &vertex,
+                           const BondScale &bonds,
+                           const bool       has_own,
+                           unsigned int     bond) {
+        for (const auto &tangent : vertex.tangents)
+          if (!tangent.is_held)
+            {
+              if (has_own && &tangent == &vertex.tangents[0])
+                {
+                  bond = static_cast<unsigned int>(result.f.size());
+                  result.f.push_back(
+                    pieces.scaled(weights(tangent.index) * bonds.stretch *
+                                    bonds.stretch / bonds.shear,
+                                  bonds.stretch));
+                  graph.emplace_back();
+                }
+              result.bonds[tangent.index] = bond;
+              // Without bonds any weight will do.
+              if (bonds.shear > 0.)
+                result.weights(tangent.index) = bonds.shear;
+            }
+        return bond;
+      };
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const BondScale bonds     = adhesion.points().bonds_at(i);
+          const bool      separates = bonds.shear_energy > 0.;
+          shear_bonds[i]            = add(boundary.nodes[i],
+                               separates ? bonds.in_shear() : bonds,
+                               separates,
+                               i);
+        }
+      for (unsigned int i = 0; i < n; ++i)
+        if (shear_bonds[i] >= n)
+          for (const unsigned int j : graph[i])
+            if (shear_bonds[j] >= n)
+              graph[shear_bonds[i]].insert(shear_bonds[j]);
+      for (const auto &vertex : boundary.held_vertices)
+        if (!vertex.tangents.empty())
+          {
+            BondScale bonds =
+              adhesion.points().bonds_at(vertex.position, vertex.boundary);
+            if (bonds.shear_energy > 0.)
+              bonds = bonds.in_shear();
+            if (bonds.shear == 0.)
+              bonds.shear = 1.;
+            add(vertex, bonds, true, 0);
+          }
+      return result;
+    }
+
+
+
+    /// Returns whether a sum over nodes of the law at their unknowns is Phi.
+    template <int dim>
+    bool
+    is_sum_over_nodes(const AdhesionIntegral<dim> &adhesion)
+    {
+      return adhesion.points().is_nodal() &&
+             std::none_of(adhesion.points().list().begin(),
+                          adhesion.points().list().end(),
+                          [](const auto &point) {
+                            return point.shears() && (point.offset != 0. ||
+                                                      !point.held_slip.empty());
+                          });
+    }
+
+
+
     /// The coarse unknowns of a prolongation that meet at a fine one.
     NeighbourGraph
     coarse_neighbours(const Eigen::SparseMatrix<double> &P)
@@ -92,9 +181,7 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(adhesion.contact_boundary()))
-        , lumped(lumped_energy(adhesion.adhesive_law().pieces(),
-                               lumped_weights(adhesion),
-                               stretches(adhesion)))
+        , lumped(lumped_bonds(adhesion, graph))
         , work(parameters.search_operations)
       {
         // The scale of the gap: what the bonds can change in J. That is at most
@@ -104,7 +191,7 @@ namespace Debond
         // body.
         result.energy_of_bonds =
           std::min(condensed.energy_of_kept(), lumped.largest_value());
-        result.search_nodes = static_cast<unsigned int>(s.size());
+        result.search_nodes = adhesion.n_nodes();
       }
 
       void
@@ -147,6 +234,13 @@ namespace Debond
       void
       prove()
       {
+        if (!is_sum_over_nodes(adhesion))
+          {
+            result.notes.push_back(
+              "no proof: it needs bonds that shear where no support moves their "
+              "boundary, or holds it above the foundation");
+            return;
+          }
         const Stage  stage("proof");
         const double functional =
           condensed_functional(condensed_problem(condensed, adhesion), s);
@@ -182,7 +276,7 @@ namespace Debond
       Eigen::VectorXd             &s;
       WhichMinimum                &result;
       const MajoriseMinimise       method;
-      const NeighbourGraph         graph;
+      NeighbourGraph               graph;
       const SeparableEnergy        lumped;
 
       WorkLimit work;
@@ -259,7 +353,7 @@ namespace Debond
         // separable, as the bound needs it. With others the lumped bonds only
         // guide the search.
         const GuidedSearchResult guided = guided_search(
-          problem(), adhesion.points().is_nodal(), proof_limits(), s);
+          problem(), is_sum_over_nodes(adhesion), proof_limits(), s);
         add_search(guided.search);
         // A proof that a limit of work has cut may not have come to any bound.
         if (guided.proof && std::isfinite(guided.proof->lower))
@@ -274,9 +368,11 @@ namespace Debond
         // where it proves the result there is nothing to search for.
         if (try_bound_at_point())
           return;
-        guess =
-          ActiveSetGuess(condensed.schur_complement(),
-                         coarsen(adhesion.contact_boundary(), guess_nodes));
+        // Coarser spaces have no tangents.
+        if (!adhesion.shears())
+          guess =
+            ActiveSetGuess(condensed.schur_complement(),
+                           coarsen(adhesion.contact_boundary(), guess_nodes));
         // Starts from rest and from all bonds broken find the minima that are
         // far away. They need an active set from coarse spaces, since from afar
         // it takes the more systems the more nodes there are.
@@ -284,7 +380,8 @@ namespace Debond
         starts.maximum_shift = 0;
         starts.flips         = false;
         search_nodes(starts);
-        look_on_coarse_mesh();
+        if (!adhesion.shears())
+          look_on_coarse_mesh();
         BranchSearchParameters edges = starts;
         edges.starts                 = false;
         // The coarse mesh knows the fronts to within its nodes; moves by one
@@ -306,7 +403,7 @@ namespace Debond
       {
         // Without branching the bound needs laws that are separable and have
         // finitely many quadratic pieces.
-        if (!adhesion.points().is_nodal() || !lumped.is_piecewise_quadratic())
+        if (!is_sum_over_nodes(adhesion) || !lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters no_nodes = proof_limits();
         no_nodes.maximum_nodes            = 0;
@@ -451,8 +548,7 @@ namespace Debond
     result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = wants_search(parameters);
     // A J without adhesion is convex, and its minimum is the only one.
-    if (result.kind == MinimumKind::global || adhesion.shears() ||
-        !(searches || parameters.prove))
+    if (result.kind == MinimumKind::global || !(searches || parameters.prove))
       return result;
 
     // The search comes first: a good upper value lets branch and bound discard

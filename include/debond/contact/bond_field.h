@@ -33,6 +33,15 @@ namespace Debond
     /// Unless it is 0, bonds in shear break by themselves, with this energy.
     double shear_energy = 0.;
 
+    /// The bonds in shear of those that break by themselves.
+    BondScale
+    in_shear() const
+    {
+      return {shear_energy,
+              stretch * std::sqrt(shear_energy / (shear * energy)),
+              1.};
+    }
+
     /// Gives bonds this many times the energy, with the stiffness they have.
     void
     toughen(const double factor)

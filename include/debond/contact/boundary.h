@@ -77,6 +77,9 @@ namespace Debond
 
       bool is_tangential = false;
 
+      /// A piece of the body's boundary that it belongs to.
+      dealii::types::boundary_id boundary = 0;
+
       std::vector<Tangent> tangents = {}; ///< as of a node
     };
 
