@@ -159,10 +159,36 @@ namespace Debond
   std::optional<ProofNode>
   BondBound::root(const double best_value) const
   {
-    auto node = NodeBound::root(best_value);
-    if (!node)
+    const auto inverse = safe_inverse(S);
+    if (!inverse)
+      return {};
+    // Without Phi, which is not negative, the functional is at least
+    //     least - e |z - x| + 1/2 |z - x|^2
+    // by the energy norm of S and, for the rest r = S x - g, that of its
+    // inverse, e = |r|: with S nearly singular x is rounded by much.
+    using LongVector        = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+    const Eigen::VectorXd s = *inverse * g;
+    const LongVector x = s.cast<long double>(), load = g.cast<long double>(),
+                     Sx = S.cast<long double>() * x;
+    const Eigen::VectorXd rest =
+      ((Sx - load).cwiseAbs() +
+       (n + 16.L) * std::numeric_limits<long double>::epsilon() *
+         (S.cwiseAbs().cast<long double>() * x.cwiseAbs() + load.cwiseAbs()))
+        .cast<double>();
+    const double square = rest.dot(inverse->cwiseAbs() * rest);
+    const double more =
+      2. * static_cast<double>(best_value - x.dot(0.5L * Sx - load));
+    const double distance =
+      std::sqrt(square) + std::sqrt(std::max(0., square + more));
+    const Eigen::VectorXd radius =
+      (1. + Tolerance::outwards) * distance * inverse->diagonal().cwiseSqrt() +
+      Tolerance::outwards * s.cwiseAbs();
+    std::optional<ProofNode> node =
+      ProofNode{-infinity, 0, s - radius, upper.cwiseMin(s + radius), s, {}};
+    if (!node->lower.allFinite())
       return {};
     const Eigen::Index size = n + static_cast<Eigen::Index>(phi.f.size());
+    node->lower             = node->lower.cwiseMin(upper);
     node->lower.conservativeResizeLike(Eigen::VectorXd::Zero(size));
     node->upper.conservativeResizeLike(Eigen::VectorXd::Ones(size));
     node->bound = BondRelaxation{phi, g, *node, S}.set_bounds();
@@ -223,7 +249,10 @@ namespace Debond
         relaxation.minimise(upper);
         const double value = relaxation.set_bounds();
         node.bound         = std::max(node.bound, value);
-        if (node.bound >= best_value - tolerance || all_decided)
+        // Without a bound, as x may be no number where A is nearly singular,
+        // that of before is left.
+        if (node.bound >= best_value - tolerance || all_decided ||
+            !(value < best_value))
           break;
 
         // Points below the best value are near x, and their bonds in states
@@ -253,9 +282,11 @@ namespace Debond
                   result  = {n + i, 0.5, {{bounds(i, 1), bounds(i, 0)}}, 0.};
                 }
             }
-        if (!is_new)
+        if (!is_new && result.unknown)
           return result;
         result = {};
+        if (!is_new)
+          break;
         if ((node.lower - node.upper).maxCoeff() > 0.)
           {
             node.bound = best_value;

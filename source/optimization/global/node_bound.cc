@@ -347,16 +347,12 @@ namespace Debond
                                          Eigen::VectorXd(),
                                          upper};
     // Within this distance of s_0 by the energy, and a little more.
-    const double          distance = 2. * (best_value + 0.5 * g.dot(s_0));
-    const Eigen::VectorXd radius =
-      (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
-      (1. + Tolerance::outwards);
-    without_phi.lower = (s_0 - radius).cwiseMin(upper);
+    const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
+    without_phi.lower =
+      (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
+               (1. + Tolerance::outwards))
+        .cwiseMin(upper);
     without_phi.lower -= Tolerance::outwards * without_phi.lower.cwiseAbs();
-    for (unsigned int i = 0; i < n; ++i)
-      if (std::isinf(upper(i)))
-        without_phi.upper(i) =
-          s_0(i) + radius(i) + Tolerance::outwards * std::abs(s_0(i));
 
     ProofNode node;
     node.number = 0;
