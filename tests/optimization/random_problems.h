@@ -164,16 +164,13 @@ struct Problem
     const LongVector s_long = s.cast<long double>();
     long double      sum = s_long.dot(0.5L * (S.cast<long double>() * s_long) -
                                  g.cast<long double>());
-    LongVector       l   = s_long;
-    if (!phi.bonds.empty())
-      {
-        l = LongVector::Zero(phi.f.size());
-        for (unsigned int j = 0; j < s.size(); ++j)
-          l(bond(j)) += weight(j) * s_long(j) * s_long(j);
-        l = -l.cwiseSqrt();
-      }
-    for (unsigned int i = 0; i < l.size(); ++i)
-      sum += least_branch(phi.f[i], l(i));
+    LongVector       squares = LongVector::Zero(phi.f.size());
+    for (unsigned int j = 0; j < s.size(); ++j)
+      squares(bond(j)) += weight(j) * s_long(j) * s_long(j);
+    for (unsigned int i = 0; i < squares.size(); ++i)
+      sum +=
+        least_branch(phi.f[i],
+                     phi.bonds.empty() ? s_long(i) : -std::sqrt(squares(i)));
     return sum;
   }
 
