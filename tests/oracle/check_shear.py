@@ -171,11 +171,12 @@ def check_layers():
              "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=",
              SUPPORTS + "Contact boundary=bottom", SUPPORTS + "Displacement top=" + vector(*move),
              *bonds(kn, kt, energy), *NO_HEALING]
-    # The shear at the sides is a load, or comes from sides that are led up and down.
+    # The shear at the sides is a load, or comes from sides that are led up and down; with one cell
+    # no vertex is free along the normal then.
+    led = [SUPPORTS + f"Displacement {side}=free; {lift}" for side in ("left", "right")]
     for name, sides in (("loads", [f"Loads/Traction left={vector(0, -kt * t)}",
                                    f"Loads/Traction right={vector(0, kt * t)}"]),
-                        ("led", [SUPPORTS + f"Displacement {side}=free; {lift}"
-                                 for side in ("left", "right")])):
+                        ("led", led), ("led, one cell", [*led, "Mesh/Cells=1, 4"])):
         for more in ([NODAL], DEGREE_2, GAUSS):
             factors = f"{breaks / 2!r}, {breaks * .999!r}, {breaks * 1.2!r}"
             path = solve(*scene, *sides, *more, "Load path/Displacement factors=" + factors,
@@ -184,7 +185,8 @@ def check_layers():
             check(at + " has all steps", len(path) == 3, path)
             for row, b in zip(path[:2], (breaks / 2, breaks * .999)):
                 close(f"{at}, {b}: J", row["J"], 6 * J * b * b, 1e-10)
-                close(f"{at}, {b}: opening", row["largest_gap"], b * p, 1e-10)
+                if name != "led, one cell":
+                    close(f"{at}, {b}: opening", row["largest_gap"], b * p, 1e-10)
                 close(f"{at}, {b}: reaction", row["reaction_top_x"], 6 * b * kt * t, 1e-10)
                 check(f"{at}, {b}: nothing broke", row["dissipated_energy"] == 0)
             if len(path) == 3:
@@ -367,7 +369,7 @@ def check_strips():
                 result = solve(*strips(name, factor), "Solver/Prove=true")
                 close(at + ", least", result.get("functional"), least, 1e-9)
                 check(at + ", least, broken", broken(result) == n_least, broken(result))
-                check(at + " is proved", result["proof"]["status"] == "proved")
+                check(at + " is proved", result.get("proof", {}).get("status") == "proved")
                 check_profile(at + ", least", result, 50., 20., .02)
 
 
