@@ -141,6 +141,24 @@ namespace Debond
       const Eigen::VectorXd by_slope = of_tangents.solve(problem.slope.tail(m));
       const Eigen::MatrixXd S =
         stiffness.topLeftCorner(n, n) - to_tangents * by_normals;
+      const auto at = [&](const double passed) {
+        return bonds.at(last.factors.displacements +
+                        passed *
+                          (next.displacements - last.factors.displacements));
+      };
+      const auto change = [&](const double           from,
+                              const Eigen::VectorXd &s,
+                              const double           to,
+                              const Eigen::VectorXd &next_s) {
+        const double part = at(from).first_change_to(at(to), s, next_s);
+        return part == 1. ?
+                 std::nullopt :
+                 std::make_optional(factor_between(last.factors,
+                                                   next,
+                                                   from + part * (to - from)));
+      };
+      if (n == 0)
+        return change(0., last.s, 1., by_load + by_slope);
       StationaryPath path({S,
                            problem.load.head(n) - to_tangents * by_load,
                            problem.slope.head(n) - to_tangents * by_slope,
@@ -168,17 +186,8 @@ namespace Debond
           event                        = path.advance(0., 1.);
           if (event != Event::contact && event != Event::end)
             return {};
-          const auto at = [&](const double passed) {
-            return bonds.at(
-              last.factors.displacements +
-              passed * (next.displacements - last.factors.displacements));
-          };
-          const double part =
-            at(t).first_change_to(at(path.t()), before, point());
-          if (part < 1.)
-            return factor_between(last.factors,
-                                  next,
-                                  t + part * (path.t() - t));
+          if (const auto factor = change(t, before, path.t(), point()))
+            return factor;
         }
       return {};
     }

@@ -13,7 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from run_scenes import Scenes
 
 # Whether the least J is searched for and proved.
-PROVES = False
+PROVES = True
 
 scenes = Scenes(sys.argv[1])
 solve, check = scenes.solve, scenes.check
