@@ -189,7 +189,8 @@ def check_layers():
                     close(f"{at}, {b}: opening", row["largest_gap"], b * p, 1e-10)
                 close(f"{at}, {b}: reaction", row["reaction_top_x"], 6 * b * kt * t, 1e-10)
                 check(f"{at}, {b}: nothing broke", row["dissipated_energy"] == 0)
-            if len(path) == 3:
+            # Between nodes it is not known with supports that move the contact boundary.
+            if len(path) == 3 and (name == "loads" or more == [NODAL]):
                 close(at + ": first break", path[2]["change_factor"], breaks, 1e-10)
 
 
@@ -341,8 +342,7 @@ def broken(result):
 def check_profile(name, result, kn, kt, energy):
     """What the bonds of each node bear is what their law says of its opening and slip."""
     rows = [row for row in result["profile"] if row["state"] != "held"]
-    scale = max(math.hypot(row["normal_force_density"], row["shear_force_density"])
-                for row in rows)
+    scale = math.sqrt(2 * kn * energy)
     for row in rows:
         at = f"{name} at {row['x']}"
         slip = math.hypot(row["slip_x"], row["slip_y"])
@@ -554,8 +554,8 @@ def check_limits():
               1e-9)
         check(name + ", broken", broken(both[0]) == broken(both[1]) > 0)
         check(name + ": slip without force", max(
-            row["shear_force_density"] for row in both[1]["profile"]) < 1e-9 * max(
-                abs(row["normal_force_density"]) for row in both[1]["profile"]))
+            abs(row["tangential_force_x"]) for row in both[1]["profile"]) < 1e-9 * max(
+                abs(row["normal_force"]) for row in both[1]["profile"]))
         fixed = solve(*scene, *bonds(50., 20., .02)[1:3], "Contact law/Fracture energy=100",
                       TANGENTIAL + "fixed", FROM_REST)["functional"]
         last = None
