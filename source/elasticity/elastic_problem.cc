@@ -52,9 +52,31 @@ namespace Debond
             glued.push_back(nodes);
         }
       if (!unknowns.pairs().empty())
-        for (const auto &of_rank :
-             dealii::Utilities::MPI::all_gather(unknowns.communicator(), glued))
-          std::for_each(of_rank.begin(), of_rank.end(), add);
+        {
+          for (const auto &of_rank :
+               dealii::Utilities::MPI::all_gather(unknowns.communicator(),
+                                                  glued))
+            std::for_each(of_rank.begin(), of_rank.end(), add);
+          // Bonds couple jumps of neighbours, which belong to different bodies
+          // where supports have exchanged the nodes of a pair.
+          const ContactBoundary<dim> &boundary = unknowns.contact().boundary();
+          for (const auto &face : boundary.faces)
+            {
+              nodes.clear();
+              for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+                if (!face.is_held(k))
+                  nodes.push_back(
+                    unknowns.contact().normal_dofs()[face.node(k)] / dim);
+                else if (!boundary.held_vertices.empty())
+                  for (const auto &tangent :
+                       boundary.held_vertices[face.held_at(k)].tangents)
+                    if (!tangent.is_held)
+                      nodes.push_back(unknowns.contact().dofs()[tangent.index] /
+                                      dim);
+              std::sort(nodes.begin(), nodes.end());
+              add(nodes);
+            }
+        }
 
       const dealii::IndexSet   &own = dofs.locally_owned_dofs();
       std::vector<unsigned int> lengths(own.size(), 1);

@@ -54,7 +54,8 @@ namespace Debond
         if (last.s(i) < 0.)
           {
             const double       stretch = bonds.points().bonds_at(i).stretch;
-            const unsigned int k       = branches.index(last.s(i) / stretch);
+            const unsigned int k = std::max(branches.index(last.s(i) / stretch),
+                                            bonds.least_piece(i));
             if (increases ? k + 1 == branches.size() :
                             k <= bonds.least_piece(i))
               continue;

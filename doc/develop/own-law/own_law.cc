@@ -27,9 +27,9 @@ main()
 
   // What resists: unknowns, supports, A and f.
   BoundaryConditions conditions;
-  conditions.contact                       = {sides.at("bottom")};
-  conditions.tangential_displacement_fixed = false;
-  const double lift                        = 0.03;
+  conditions.contact                 = {sides.at("bottom")};
+  conditions.tangential_displacement = TangentialDisplacement::free;
+  const double lift                  = 0.03;
   Supports<2>  supports;
   for (const std::string side : {"left", "right"})
     supports.displacements.push_back(
