@@ -1,0 +1,35 @@
+// A specimen for mixed-mode bending: half span L, two arms of the height h, cells of the
+// size d at the tip of the crack at x = a and of 0.8 mm elsewhere.
+DefineConstant[ L = 50.4, h = 2.25, a = 25.4, d = 0.0028 ];
+far = 0.8;
+Point(1) = {0, 0, 0, far};
+Point(2) = {2 * L, 0, 0, far};
+Point(3) = {2 * L, h, 0, far};
+Point(4) = {a + 10, h, 0, far};
+Point(5) = {a, h, 0, d};
+Point(6) = {0, h, 0, far};
+Point(7) = {2 * L, 2 * h, 0, far};
+Point(8) = {2 * L - 1, 2 * h, 0, far};
+Point(9) = {L + 1, 2 * h, 0, far};
+Point(10) = {L - 1, 2 * h, 0, far};
+Point(11) = {0, 2 * h, 0, far};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {3, 7};
+Line(8) = {7, 8};
+Line(9) = {8, 9};
+Line(10) = {9, 10};
+Line(11) = {10, 11};
+Line(12) = {11, 6};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6};
+Curve Loop(2) = {7, 8, 9, 10, 11, 12, -5, -4, -3};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Curve("left") = {6, 12};
+Physical Curve("right") = {2, 7};
+Physical Curve("top") = {8, 9, 10, 11};
+Physical Surface("specimen") = {1, 2};
