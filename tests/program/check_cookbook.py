@@ -383,6 +383,9 @@ def main(debond, directory):
             [f"Constants/c={c}", "Load path/Factors=P"])
         within(f"mixed-mode bending {c}, mode", mode, next(
             row["mode_mixity"] for row in profile() if row["x"] > 25.4 - 1e-9), 0.02)
+        run(debond, directory + "/mixed-mode-bending-by-mode.prm", [f"Constants/c={c}"])
+        within(f"mixed-mode bending {c}, energy by mode", computed, 25.4 * path_rows()[-1][
+            "change_factor"], 0.002)
     run(debond, directory + "/mixed-mode-bending-path.prm", [])
     rows = path_rows()
     within("mixed-mode bending, glue that softens", 371.5 / 25.4, next(
