@@ -183,13 +183,18 @@ namespace Debond
         std::array<unsigned int, dim> grip;
         for (unsigned int k = 0; k < dim; ++k)
           {
-            const BondScale bonds =
-              adhesion.points().bonds_at(face, just_inside<dim>(k));
-            std::array<double, dim> vertex_of_face = {};
-            vertex_of_face[k]                      = 1.;
+            const auto      inside = just_inside<dim>(k);
+            const BondScale bonds  = adhesion.points().bonds_at(face, inside);
+            // On the other side of the vertex bonds may not shear.
+            std::array<double, dim> place = inside;
+            if (bonds.shear == 0.)
+              {
+                place    = {};
+                place[k] = 1.;
+              }
             // What has broken for good stays broken where it closes.
             beyond[k] =
-              std::max(adhesion.points().opening(face, vertex_of_face, s),
+              std::max(adhesion.points().opening(face, place, s),
                        -adhesion.reached_at(face, k) * bonds.stretch) -
               law.bond_threshold() * bonds.stretch;
             grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;

@@ -83,7 +83,12 @@ namespace Debond
       return;
     BondMemory memory = broken;
     for (std::size_t q = 0; q < memory.mixity.size(); ++q)
-      memory.toughness[q] = (*toughness)(memory.mixity[q]);
+      {
+        const double energy =
+          contact_points.list()[q].bonds.energy / memory.toughness[q];
+        if (energy > 0.)
+          memory.toughness[q] = (*toughness)(memory.mixity[q], energy);
+      }
     set_memory(memory);
   }
 

@@ -252,19 +252,24 @@ namespace Debond
       shear.stiffness = number / law.second_derivative(0.);
     if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
       {
-        const double ratio = number / law.pieces().largest_value();
-        const double power = given.shear.exponent;
-        using MixedMode    = ShearParameters::MixedMode;
+        const double whole       = number / law.pieces().largest_value();
+        const double power       = given.shear.exponent;
+        const bool   is_relative = shear.is_relative;
+        // The energy in shear over that of the bonds of a point.
+        const auto ratio = [=](const double energy) {
+          return is_relative ? whole : whole / energy;
+        };
+        using MixedMode = ShearParameters::MixedMode;
         if (given.shear.mixed_mode == MixedMode::none)
-          shear.energy = ratio;
+          shear.energy = whole;
         else if (given.shear.mixed_mode == MixedMode::benzeggagh_kenane)
-          shear.toughness = [=](const double m) {
-            return 1. + (ratio - 1.) * std::pow(m, power);
+          shear.toughness = [=](const double m, const double energy) {
+            return 1. + (ratio(energy) - 1.) * std::pow(m, power);
           };
         else
-          shear.toughness = [=](const double m) {
+          shear.toughness = [=](const double m, const double energy) {
             return std::pow(std::pow(1. - m, power) +
-                              std::pow(m / ratio, power),
+                              std::pow(m / ratio(energy), power),
                             -1. / power);
           };
       }

@@ -70,8 +70,9 @@ namespace Debond
     bool is_relative = false;
 
     /// The fracture energy over that of opening, by the part of shear in what a
-    /// bond has stored; empty if it is always the same.
-    std::function<double(double)> toughness = {};
+    /// bond has stored and by BondScale::energy; empty if it is always the
+    /// same.
+    std::function<double(double, double)> toughness = {};
   };
 
 

@@ -170,7 +170,7 @@ namespace Debond
     set_toughness(const std::vector<double> &by_point);
 
     /// ShearBonds::toughness, null if the energy does not depend on the mode.
-    const std::function<double(double)> *
+    const std::function<double(double, double)> *
     toughness_by_mode() const
     {
       return field != nullptr && field->shear_bonds().toughness ?
