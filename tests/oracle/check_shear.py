@@ -519,6 +519,13 @@ def check_mixed_mode():
             check(f"{mode}, {m} has all steps", len(path) == 3, path)
             close(f"{mode}, {m}: energy", path[-1]["dissipated_energy"] if path else None,
                   2 * energy(m), 1e-4)
+    # With one energy for all modes it is the law without a mode, also where bonds are a field.
+    field = [e for e in moved_strips([BONDED], *NO_HEALING, steps=(.3, .6, 1.)) if "stiffness" not in e]
+    field += ["Contact law/Bond stiffness=if(x > 4, 50, 0)", "Contact law/Bond shear stiffness=20",
+              "Contact law/Fracture energy=0.02"]
+    compare("one energy", solve(*field, "Contact law/Mixed mode=benzeggagh-kenane 2",
+                                "Contact law/Shear fracture energy=0.02")["path"],
+            solve(*field)["path"], 1e-12)
     errors = solve(*strips("D10", 1.), "Contact law/Mixed mode=power law 1",
                    "Contact law/Shear fracture energy=0.05")["errors"]
     check("a single state is refused", "Contact law/Mixed mode" in errors, errors)

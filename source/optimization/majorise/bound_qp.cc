@@ -121,7 +121,7 @@ namespace Debond
       BoundQPResult
       run()
       {
-        result.x = b;
+        result.x = b.array().isFinite().select(b, 0.);
         try
           {
             if (!exchange())
