@@ -123,10 +123,16 @@ namespace Debond
     if (broken.empty())
       return;
     // The largest memory that a node has by the points of the faces around it:
-    // a node counts as broken where all of them say so.
-    reached_of_nodes.assign(n_nodes(), -std::numeric_limits<double>::max());
+    // a node counts as broken where all of them say so that have bonds.
+    constexpr double none = -std::numeric_limits<double>::max();
+    Barycentric      middle;
+    middle.fill(1. / dim);
+    reached_of_nodes.assign(n_nodes(), none);
     for (const Face &face : contact_boundary().faces)
       {
+        if (contact_points.list()[contact_points.nearest(face, middle)]
+              .bonds.energy == 0.)
+          continue;
         const auto memory = contact_points.coefficients(face, broken.reached);
         for (unsigned int k = 0; k < contact_boundary().n_face_nodes(); ++k)
           if (!face.is_held(k))
@@ -135,6 +141,7 @@ namespace Debond
               reached         = std::max(reached, std::min(memory[k], 0.));
             }
       }
+    std::replace(reached_of_nodes.begin(), reached_of_nodes.end(), none, 0.);
   }
 
 
