@@ -77,7 +77,8 @@ namespace Debond
       {"/nu$", "Poisson ratio"},
       {"gravity|/weight$", "Body force"},
       {"symmetry", "Roller boundaries"},
-      {"tangential stiffness", "Bond shear stiffness"},
+      {"tangential stiffness|shear strength|/k_?(ss|tt|t)$",
+       "Bond shear stiffness"},
       {"mode (ii|2) energy|\\bg_?ii_?c\\b", "Shear fracture energy"},
       {"cohesive", "Bond"}};
     std::string translated = path;

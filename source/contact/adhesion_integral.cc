@@ -61,13 +61,23 @@ namespace Debond
         return;
       // What the bonds take in this step they take with the energy that they
       // have in it.
-      memory.taken[q] += point.weight * point.bonds.energy *
-                         (law.value(0., now) - law.value(0., reached));
+      const double taken = point.weight * point.bonds.energy *
+                           (law.value(0., now) - law.value(0., reached));
+      memory.taken[q] += taken;
       const Jump<dim> jump   = point.jump(s);
       const double    square = jump.product(jump, point.bonds.shear);
-      if (square > 0.)
-        memory.mixity[q] =
-          point.bonds.shear * jump.tangential.norm_square() / square;
+      if (!(square > 0.))
+        return;
+      memory.mixity[q] =
+        point.bonds.shear * jump.tangential.norm_square() / square;
+      if (taken > 0.)
+        {
+          const double before = memory.toughness[q];
+          const double after =
+            (*contact_points.toughness_by_mode())(memory.mixity[q],
+                                                  point.bonds.energy / before);
+          memory.lag += std::abs(after / before - 1.) * taken;
+        }
     });
     set_memory(memory);
   }

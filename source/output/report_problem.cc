@@ -5,6 +5,7 @@
 #include <debond/base/version.h>
 #include <debond/output/report.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -30,6 +31,22 @@ namespace Debond
 
 
     /// Reports material, supports, loads and contact as the scene has them.
+    /// The strength that follows from stiffness and energy, for the log.
+    std::string
+    strength_in_shear(const ProblemParameters &problem)
+    {
+      const AdhesiveLaw law(problem.law.pieces);
+      double            ratio = 1., energy = 1.;
+      if (read_number(problem.shear.stiffness, ratio))
+        ratio /= law.second_derivative(0.);
+      if (read_number(problem.shear.energy, energy))
+        energy /= law.pieces().largest_value();
+      return words(", strength ",
+                   law.bond_strength() * std::sqrt(ratio * energy));
+    }
+
+
+
     void
     report_data(const ProblemParameters &problem,
                 const unsigned int       n_contact_nodes,
@@ -109,8 +126,11 @@ namespace Debond
       if (problem.shear.is_somewhere)
         record.line("bonds in shear",
                     problem.shear.stiffness.empty() ?
-                      "as along the normal" :
+                      "stiffness as along the normal" :
                       "stiffness " + problem.shear.stiffness,
+                    problem.law.has_field() || problem.law.pieces.size() == 1 ?
+                      "" :
+                      strength_in_shear(problem),
                     problem.shear.breaks_separately ?
                       ", breaking separately, energy " + problem.shear.energy :
                     problem.shear.energy.empty() ?

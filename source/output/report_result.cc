@@ -276,6 +276,13 @@ namespace Debond
                   {"largest_displacement", largest.displacement},
                   {"largest_displacement_gradient", largest.gradient},
                   {"largest_von_mises", largest.von_mises}});
+      if (const auto n = std::count_if(verification.nodes.begin(),
+                                       verification.nodes.end(),
+                                       [](const ContactNodeState &node) {
+                                         return node.shear_damage == 1.;
+                                       });
+          n > 0)
+        texts.push_back(words("in shear broken ", n));
       record.line("contact nodes",
                   texts.empty() ? "all held" : join(texts, ", "));
       record.line("opening",

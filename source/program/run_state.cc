@@ -133,8 +133,8 @@ namespace Debond
       BondMemory &memory = state.path.memory;
       archive &state.scene &state.mesh &state.meshes.divisions &state
         .has_last_mesh &state.shortfall &state.path.kinds &memory
-        .reached &memory.toughness &memory.mixity &memory.taken &state.meshes
-        .start                                                  &state.path.u;
+        .reached &memory.toughness &memory.mixity &memory.taken &memory
+        .lag &state.meshes.start &state.path.u;
       exchange(archive, state.meshes.levels);
       exchange(archive, state.path.steps);
       exchange(archive, state.path.points);

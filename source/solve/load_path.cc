@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/solve/bond_change.h>
 #include <debond/solve/contact_solver.h>
@@ -15,6 +16,7 @@
 #include <iomanip>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -155,6 +157,15 @@ namespace Debond
             table.row(steps.back());
           }
         result.parts["followed path"] += timer.wall_time();
+        const BondMemory &memory = progress.memory;
+        const double      taken =
+          std::accumulate(memory.taken.begin(), memory.taken.end(), 0.);
+        if (memory.lag > Tolerance::lag_of_mode * taken)
+          result.notes.push_back(words(
+            "the mode of bonds changes within the steps in which they break, "
+            "which moves what they take by up to ",
+            std::round(1000. * memory.lag / taken) / 10.,
+            " per cent of it: take smaller steps there"));
       }
 
       /// Whether there are steps and the last one is verified. The path may be

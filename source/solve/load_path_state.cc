@@ -42,8 +42,9 @@ namespace Debond
     /// LoadPathState::cell_size_at_edge.
     template <int dim>
     double
-    cell_size_at_edge(const ElasticProblem<dim> &problem,
-                      const Verification<dim>   &verification)
+    cell_size_at_edge(const ElasticProblem<dim>   &problem,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Verification<dim>     &verification)
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &boundary = unknowns.contact().boundary();
@@ -65,7 +66,11 @@ namespace Debond
                     node.branch == BondState::free)
                   are_gone = true;
                 else
-                  stiffness = std::max(stiffness, node.bond_stiffness);
+                  stiffness = std::max(
+                    stiffness,
+                    node.bond_stiffness *
+                      std::max(1.,
+                               adhesion.points().bonds_at(face.node(k)).shear));
               }
           if (are_gone)
             at_edge[face.cell] =
@@ -124,8 +129,16 @@ namespace Debond
         }
     };
 
+    const bool breaks_separately =
+      std::any_of(adhesion.points().list().begin(),
+                  adhesion.points().list().end(),
+                  [](const auto &point) { return point.n_entries == 0; });
+    if (breaks_separately)
+      state.other_parts.emplace_back("broken_in_shear", 0.);
     for (unsigned int i = 0; i < nodes.size(); ++i)
       {
+        if (breaks_separately && verification.nodes[i].shear_damage == 1.)
+          state.other_parts.back().second += nodes[i].measure;
         // Each node counts with the measure of the boundary that its bonds
         // stand for.
         const ContactNodeState &node = verification.nodes[i];
@@ -176,7 +189,8 @@ namespace Debond
     state.force_imbalance      = verification.force_imbalance;
     state.broken_zone          = verification.broken_zone;
     state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
-    state.cell_size_at_edge = cell_size_at_edge(problem, verification);
+    state.cell_size_at_edge =
+      cell_size_at_edge(problem, adhesion, verification);
     state.dissipated_energy = adhesion.dissipated_energy();
     for (const auto &[name, vector] : verification.reactions)
       state.vectors.emplace_back("reaction_" + as_title(name), vector);

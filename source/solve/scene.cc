@@ -253,7 +253,7 @@ namespace Debond
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);
-    if (given.law.has_field() || given.shear.is_somewhere)
+    if (given.law.has_field() || boundary_conditions.has_shear())
       bond_field =
         make_bond_field<dim>(given, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(

@@ -502,6 +502,10 @@ namespace Debond
   {
     if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
       return MinimumKind::global;
+    // With an energy that depends on the mode there is no J that it would be a
+    // minimum of.
+    if (adhesion.points().toughness_by_mode() != nullptr)
+      return MinimumKind::stationary;
     // At a drop of the traction J has a concave kink, from which one of the two
     // directions descends. So close to it rounding decides on which side a bond
     // is, and nothing is claimed.

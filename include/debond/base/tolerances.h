@@ -28,6 +28,10 @@ namespace Debond
     /// normals, and a digit less is lost for each face.
     constexpr double free_normal = 1e-6;
 
+    /// A note is due if the mode of bonds that break lags by this part of the
+    /// energy that they take.
+    constexpr double lag_of_mode = 0.02;
+
     /// Determinant of normals at a vertex: groups of them are 31 degrees apart,
     /// so that a small one means opposite ones, or three in a plane.
     constexpr double dependent_normals = 1e-3;

@@ -23,6 +23,10 @@ namespace Debond
     /// that they have taken.
     std::vector<double> toughness = {}, mixity = {}, taken = {};
 
+    /// By how much the energies that bonds have taken would differ with the
+    /// modes at the ends of the steps.
+    double lag = 0.;
+
     bool
     empty() const
     {

@@ -8,6 +8,7 @@
 #include <debond/base/entry_error.h>
 #include <debond/mesh/body.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -54,6 +55,18 @@ namespace Debond
       return own == own_tangential_displacements.end() ?
                tangential_displacement :
                own->second;
+    }
+
+    /// Returns whether bonds shear on some contact boundary.
+    bool
+    has_shear() const
+    {
+      return std::any_of(contact.begin(),
+                         contact.end(),
+                         [this](const dealii::types::boundary_id id) {
+                           return tangential(id) ==
+                                  TangentialDisplacement::bonded;
+                         });
     }
 
     /// Returns whether the tangential displacement is fixed on this contact
