@@ -80,11 +80,13 @@ namespace Debond
                            const BondScale &bonds,
                            const bool       has_own,
                            unsigned int     bond) {
+        bool is_first = has_own;
         for (const auto &tangent : vertex.tangents)
           if (!tangent.is_held)
             {
-              if (has_own && &tangent == &vertex.tangents[0])
+              if (is_first)
                 {
+                  is_first = false;
                   bond = static_cast<unsigned int>(result.f.size());
                   result.f.push_back(
                     pieces.scaled(weights(tangent.index) * bonds.stretch *

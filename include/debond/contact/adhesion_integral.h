@@ -6,6 +6,7 @@
 #include <debond/contact/law.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace Debond
@@ -234,11 +235,14 @@ namespace Debond
       return law.softens();
     }
 
-    /// Returns whether bonds bear shear.
+    /// Returns whether bonds bear shear, or could.
     bool
     shears() const
     {
-      return n_unknowns() > n_nodes();
+      return n_unknowns() > n_nodes() ||
+             std::any_of(contact_points.list().begin(),
+                         contact_points.list().end(),
+                         [](const auto &point) { return point.shears(); });
     }
 
     /// Prescribed displacements stay as they are on the way.
