@@ -325,15 +325,25 @@ namespace Debond
 
   namespace
   {
-    /// How far a point is from the end of its piece along @p way, a jump for
-    /// each unit of it: infinite if it does not come there.
+    /// How far a point at @p s is from the end of its piece along @p way, a
+    /// jump for each unit of it: infinite if it does not come there.
     template <int dim>
     double
-    way_to_end(const ContactPoint<dim>      &point,
-               const PiecewiseEnergy::Piece &piece,
-               const Jump<dim>              &jump,
-               const Jump<dim>              &way)
+    way_to_end(const AdhesiveLaw       &law,
+               const ContactPoint<dim> &point,
+               const VectorView        &s,
+               const double             stretch,
+               const double             reached,
+               const Jump<dim>         &way)
     {
+      // Points without bonds have no kink.
+      if (point.bonds.energy == 0.)
+        return infinity;
+      const PiecewiseEnergy::Piece piece =
+        law.pieces().piece_at(stretch, reached);
+      if (!point.shears())
+        return piece.way_to_end(stretch, way.normal / point.bonds.stretch);
+      const Jump<dim> jump = point.jump(s);
       // The square of the opening, A x^2 + 2 B x + C.
       const double shear = point.bonds.shear;
       const double A     = way.product(way, shear);
@@ -371,26 +381,13 @@ namespace Debond
   {
     // Stretches are affine in s, so each point moves on a straight way to the
     // end of its piece. Up to the first arrival Phi is one smooth function.
-    // Points without bonds have no kink. The offset is part of
-    // point.stretch(ds), but it does not move, so it is taken off again.
+    // Offsets are part of the displacements for ds, but they do not move, so
+    // that they are taken off again.
     double first = limit;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
-      if (point.bonds.energy == 0.)
-        return;
-      const auto piece = law.pieces().piece_at(stretch, reached);
-      if (point.shears())
-        {
-          Jump<dim> way = {point.normal_displacement(ds) - point.offset, {}};
-          for (const auto &part : point.slip)
-            way.tangential += ds(part.index) * part.direction;
-          first = std::min(first, way_to_end(point, piece, point.jump(s), way));
-        }
-      else
-        first =
-          std::min(first,
-                   piece.way_to_end(stretch,
-                                    point.stretch(ds) -
-                                      point.offset / point.bonds.stretch));
+      const Jump<dim> way = {point.normal_displacement(ds) - point.offset,
+                             point.jump(ds).tangential - point.slip_offset};
+      first = std::min(first, way_to_end(law, point, s, stretch, reached, way));
     });
     return first;
   }
@@ -406,24 +403,12 @@ namespace Debond
     double      first      = 1.;
     const auto *next_point = next.points().list().data();
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
-      const auto &to = *next_point++;
-      if (point.bonds.energy == 0.)
-        return;
-      const auto piece = law.pieces().piece_at(stretch, reached);
-      if (!point.shears())
-        {
-          first =
-            std::min(first,
-                     piece.way_to_end(stretch, to.stretch(next_s) - stretch));
-          return;
-        }
-      const Jump<dim> jump = point.jump(s), end = to.jump(next_s);
-      first = std::min(first,
-                       way_to_end(point,
-                                  piece,
-                                  jump,
-                                  {end.normal - jump.normal,
-                                   end.tangential - jump.tangential}));
+      const auto     &to  = *next_point++;
+      const Jump<dim> way = {to.normal_displacement(next_s) -
+                               point.normal_displacement(s),
+                             to.jump(next_s).tangential -
+                               point.jump(s).tangential};
+      first = std::min(first, way_to_end(law, point, s, stretch, reached, way));
     });
     return first;
   }

@@ -471,9 +471,9 @@ namespace Debond
         add_held(prescribed.displacement());
         if (n == dim)
           return;
-        // What supports prescribe has to be along the boundary or across it.
-        // Across it the frame is still to be made, as nothing is unknown there
-        // but what bonds shear.
+        // The frame of a node has its normal first, what is prescribed along
+        // the boundary next, and the free tangents last. A vertex whose normal
+        // displacement is known has got no frame so far.
         const bool is_held =
           std::any_of(prescribed.rows.begin(),
                       prescribed.rows.end(),

@@ -57,8 +57,10 @@ namespace Debond
       dealii::Tensor<1, dim> direction;
     };
 
-    /// Of unknowns and of what is held, without bonds that shear empty; and the
-    /// prescribed part.
+    /// The displacement along the boundary is `slip_offset`, which is
+    /// prescribed, and the sum of the unknowns' parts in `slip`. `held_slip`
+    /// has the vertices that the offset is from. Without bonds that shear both
+    /// lists are empty.
     std::vector<Slip>      slip = {}, held_slip = {};
     dealii::Tensor<1, dim> slip_offset;
 

@@ -14,8 +14,9 @@ namespace Debond
   /**
    * A function Phi that is the least of convex quadratics (at each of its
    * quadrature points): one at s lies above Phi everywhere and touches it at s.
-   * s are the normal displacements of the contact nodes in their order, a
-   * length.
+   * s are the normal displacements of the contact nodes in their order, and
+   * after them displacements along the boundary where Phi depends on these:
+   * lengths.
    */
   class PiecewiseQuadratic
   {
