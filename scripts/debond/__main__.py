@@ -5,8 +5,8 @@ import importlib.util
 import sys
 
 MODULES = {"study": "report", "picture": "picture", "paper": "paper",
-           "benchmarks": "benchmarks"}
-# The last two need the source tree, and are not installed.
+           "benchmarks": "benchmarks", "published": "published"}
+# The last three need the source tree, and are not installed.
 MODULES = {name: module for name, module in MODULES.items()
            if importlib.util.find_spec("debond." + module)}
 command = sys.argv.pop(1) if len(sys.argv) > 1 else None

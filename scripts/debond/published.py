@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Problems of others beside what they publish: doc/notes/published.md."""
+
+import argparse
+import dataclasses
+import math
+import os
+import pathlib
+
+import numpy
+
+from . import cases, peers, report, runs
+from .runs import SOURCE
+
+PAGE = "doc/notes/published.md"
+PROBLEMS = []
+E_STAR = 1. / 0.91  # of E = 1 and nu = 0.3
+LAMINATE = [(0., 0.), (0.5, 30.), (0.5, 20.), (1., 30.), (1., 15.), (2., 25.), (2., 0.)]
+
+
+@dataclasses.dataclass
+class Problem:
+    """`solve(run)` yields (quantity, what the source states, Debond's value), and fourth
+    a word in place of that of the last run; run(SCENE, SETTINGS) returns the Results.
+    The differences may be up to `bound`."""
+
+    title: str
+    source: str
+    bound: float
+    solve: object
+
+    def rows(self, program, directory="output/published"):
+        """Those of the table; title, source and seconds are of the first row."""
+        seconds, found, results = 0., [], None
+        os.environ["DEBOND"] = program
+
+        def run(scene, settings=None):
+            nonlocal seconds, results
+            results = runs.run(f"{SOURCE}/prm/{scene}.prm", settings, os.path.abspath(
+                f"{directory}/{os.path.basename(scene)}"))
+            seconds += results.summary["timings_s"]["total"]
+            return results
+
+        for quantity, stated, value, *word in self.solve(run):
+            found.append([quantity, stated, value, value / stated - 1., *(
+                word or [state(results)]), results.summary["degrees_of_freedom"]])
+        return [[self.title, self.source, *row, seconds] if row is found[0] else
+                ["", "", *row, None] for row in found]
+
+
+def problem(title, source, bound):
+    """Adds a function to the PROBLEMS."""
+    def add(solve):
+        PROBLEMS.append(Problem(title, source, bound, solve))
+        return solve
+    return add
+
+
+def state(results):
+    """The word for the minimum, and the certified interval."""
+    certified = results.summary.get("certificate")
+    return results.summary["minimum"]["state"] + (f", J in [{certified['lower']:.5g}, {certified['upper']:.5g}]"
+                            if certified else "")
+
+
+def snap_back(run, scene, opening, lift, force):
+    """At an opening on the straight part of the arc on which the glue softens."""
+    arc = run(scene).load_path_arc
+    for quantity, stated, column in (("displacement", lift, "displacement_factor"),
+                                     ("force", force, "reaction_top_y")):
+        yield (f"{quantity} at the opening {opening}", stated, numpy.interp(
+            opening, arc["mean_gap"][1:3], arc[column][1:3]), "arc, unstable")
+
+
+@problem("square that snaps back", "code_aster V6.03.118, SSNP118-G", 1e-6)
+def square(run):
+    return snap_back(run, "published/snap-back-plane", 0.368848, 2.0729525, 0.852052)
+
+
+@problem("cube that snaps back", "code_aster V6.03.118, SSNP118-H", 1e-6)
+def cube(run):
+    return snap_back(run, "cookbook/snap-back", 0.368848, 2.0729525, 0.852052)
+
+
+@problem("square, bilinear law", "code_aster V6.03.118, SSNP118-D", 1e-4)
+def bilinear(run):
+    return snap_back(run, "published/snap-back-bilinear", 1.45237, 1.699739, 0.123685)
+
+
+@problem("laminate of Mäkelä, Miettinen, Lukšan, Vlček (1999)",
+         "conmech, test_Makela_et_al_1998.py", 0.08)
+def laminate(run):
+    tip = run("published/laminate").summary["probes"]["tip"][1]
+    yield "tip, subgradient method, mm", 9.60656, tip
+    tip = run("published/laminate", {"Solver/Search": "none"}).summary["probes"]["tip"][1]
+    yield "tip, Powell, mm", 0.99732, tip
+    summary = run("published/laminate", {"Certificate/Kind": "global",
+                                         "Certificate/Target": 0.005}).summary
+    yield "tip on refined meshes, mm", 9.60656, summary["probes"]["tip"][1]
+
+
+@problem("Hertz, cylinder on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2(c)",
+         0.01)
+def hertz_cylinder(run):
+    R, results = 10., run("published/hertz-cylinder", {"Certificate/Kind": "global"})
+    force = 2. * abs(results.summary["contact_reaction"][1])
+    # p^2 is a parabola in x: of the nodes but those at the edge.
+    x, p = results.profile["x"], results.profile["normal_force_density"]
+    half = math.sqrt(4. * force * R / (math.pi * E_STAR))
+    slope, top = numpy.polyfit(x[x < 0.8 * half]**2, p[x < 0.8 * half]**2, 1)
+    yield ("largest pressure at Debond's force",
+           math.sqrt(force * E_STAR / (math.pi * R)), math.sqrt(top))
+    yield "half width of contact", half, math.sqrt(-top / slope)
+
+
+def pull_off_on_springs(k, w, n=400):
+    """The force that pulls a rigid strip of the half width 1 off a half-plane, to which
+    springs of the stiffness k hold it until they have taken w: the springs' integral
+    equation by collocation."""
+    ends = numpy.sin(0.5 * math.pi * numpy.linspace(0., 1., n + 1))
+    x = 0.5 * (ends[1:] + ends[:-1])[:, None]
+
+    def logarithm(a, c):
+        return sum(t * numpy.log(abs(t)) * sign for t, sign in ((c - x, 1), (a - x, -1))
+                   ) - (c - a)
+
+    left, right = ends[:-1], ends[1:]
+    matrix = numpy.eye(n) / k - 2. / (math.pi * E_STAR) * (
+        logarithm(left, right) + logarithm(-right, -left))
+    p = numpy.linalg.solve(numpy.block([
+        [matrix, -numpy.ones((n, 1))], [2. * (right - left), numpy.zeros(1)]]),
+        numpy.append(numpy.zeros(n), 1.))[:n]
+    edge = p[-1] + (p[-1] - p[-2]) / (x[-1, 0] - x[-2, 0]) * (1. - x[-1, 0])
+    return math.sqrt(2. * k * w) / edge
+
+
+@problem("strip contact, pull-off", "Kendall, J. Phys. D 4 (1971); Johnson (1985)", 0.012)
+def strip_contact(run):
+    force = run("published/strip-contact").load_path_arc["factor"][1]
+    word = "arc, stable"
+    yield "sqrt(2 pi a E* w)", math.sqrt(2. * math.pi * E_STAR * 1e-4), force, word
+    yield ("the same on springs, integral equation", pull_off_on_springs(80., 1e-4), force,
+           word)
+
+
+@problem("plate with a crack, strength", "Tada, Paris, Irwin (1973)", 0.005)
+def cracked_plate(run):
+    part = 0.25  # of the width
+    shape = (1. - 0.025 * part**2 + 0.06 * part**4) / math.sqrt(math.cos(math.pi * part / 2.))
+    yield ("K of the finite width", math.sqrt(2e-4 * E_STAR / math.pi) / shape,
+           run("published/cracked-plate").load_path_arc["factor"][1], "arc, stable")
+
+
+@problem("JKR, cylinder", "Barquins, J. Adhesion 26 (1988)", 0.04)
+def jkr_cylinder(run):
+    R, w = 10., math.pi / 0.91 / 200.
+    for M in 0.1, 0.05, 0.025:
+        results = run("published/jkr-cylinder", {"Constants/M": M, "Certificate/Kind":
+                                                 "global" if M > 0.03 else "none"})
+        a = 12. - results.summary["broken_zone"]
+        yield (f"pull at Debond's half width {a:.3f}, M = {M}",
+               math.sqrt(2. * math.pi * E_STAR * w * a) - math.pi * E_STAR * a**2 / (4. * R),
+               -2. * results.summary["contact_reaction"][1])
+
+
+@problem("heavy strip, lifted at its end", "beam theory", 0.025)
+def heavy_strip(run):
+    summary = run("published/heavy-strip").summary
+    yield "force q L / 2, N", 0.3, summary["reactions"]["right"][1]
+    yield "length L off the floor, mm", 60., summary["broken_zone"]
+    yield ("J = q^2 L^5 / (60 E I), N", 1e-4 * 60.**5 / (5. * 70000.), run(
+        "published/heavy-strip", {"Mesh/Degree": 1, "Contact law/Quadrature": "nodal",
+                                  "Certificate/Kind": "global", "Certificate/Target": 0.02}
+    ).summary["functional"])
+
+
+@problem("double cantilever beam", "Alfano, Crisfield, IJNME 50 (2001)", 0.03)
+def double_cantilever(run):
+    path = run("cookbook/delamination").load_path
+    opening, force = path["displacement_factor"], 20. * path["reaction_upper_end_y"]
+    yield "largest force, N (their figure)", 61.5, max(force), path["minimum"][-1]
+    yield ("force at 3 mm, N (beam theory)", beam_force(3.),
+           numpy.interp(3., opening, force), path["minimum"][-1])
+
+
+def beam_force(opening):
+    """Of the two arms of 20 x 1.5 mm while the crack runs."""
+    EI = 20. * 135300. / (1. - 0.24**2 * 9. / 135.3) * 1.5**3 / 12.
+    return math.sqrt(2. * (0.28 * 20.)**1.5 * math.sqrt(EI) / (3. * opening))
+
+
+@problem("end-loaded split", "beams with a sheared layer", 1e-3)
+def end_loaded_split(run):
+    E, h, L, a, k = 70000., 2., 160., 60., 100.
+    w = math.sqrt(8. * k / (E * h))
+    c, s = math.cosh(w * (L - a)), math.sinh(w * (L - a))
+    A = (a + s / w) / c
+    moment = (A * (w * a * s + c - 1.) + L - a * c - s / w) / w**2
+    results = run("cookbook/end-loaded-split")
+    x, slip = results.profile["x"], abs(results.profile["slip_x"])
+    yield ("deflection of the end, mm", 0.5 * (
+        (L**3 + 3. * a**3 + 9. * moment) / (2. * E * h**3) + 1.2 * L / (E * h)),
+        -results.summary["probes"]["end"][1])
+    yield ("slip at the tip, mm", 0.375 / (h * k) * (1. + A * w * s - c), max(slip[x >= a]))
+
+
+@problem("lap joint", "Volkersen (1938)", 5e-3)
+def lap_joint(run):
+    E, t, L = 70000., 2., 50.
+    k = 1. / (1. / 100. + 2. * t / (3. * E / 2.))
+    w = math.sqrt(2. * k / (E * t))
+    results = run("cookbook/lap-joint", {"Constants/n": 2})
+    shear = 100. * w / 2. * (math.cosh(w * L) + 1.) / math.sinh(w * L)
+    force = results.profile["shear_force_density"]
+    yield "shear at the left end, MPa", shear, force[0]
+    yield "at the right end, MPa", shear, force[-1]
+
+
+@problem("mixed-mode bending", "Krueger, NASA/CR-2012-217562", 0.025)
+def mixed_mode_bending(run):
+    for c, load, lift in (92.9, 128.5, 1.64), (41.3, 385., 1.34), (27.3, 751., 1.65):
+        path = run("cookbook/mixed-mode-bending", {"Constants/c": c}).load_path
+        P = path["change_factor"][-1]
+        word = path["minimum"][-1]
+        yield f"load at the lever of {c} mm, N", load, 25.4 * P, word
+        yield ("its displacement, mm", lift,
+               path["unit_load_work"][0] * P / path["factor"][0], word)
+
+
+@problem("bundle method, benchmark", "Czepiel, Schedae Informaticae 20 (2011), tables 1 to 3",
+         0.1)
+def bundle(run):
+    for cells, J in ("40x4", -5.28867e-4), ("80x8", -5.37504e-4), ("160x16", -5.40066e-4):
+        yield f"J on {cells} cells, GJ/m", J, run(
+            f"benchmark-{cells}", {"Solver/Method": "automatic"}).summary["functional"]
+    yield "the same, refined", -5.40066e-4, run("benchmark-40x4", {
+        "Solver/Method": "automatic", "Certificate/Kind": "global",
+        "Certificate/Target": 0.005}).summary["functional"]
+
+
+def others(program, directory="output/published"):
+    """Rows of what optimisers of others end at on two of the discrete problems."""
+    os.environ["DEBOND"] = program
+    for title, scene, settings, points in (
+            ("benchmark, a = 690, 80x8", "benchmark-80x8",
+             {"Contact law/Bond stiffness": 690, "Solver/Method": "automatic"},
+             [(0., 0.), (0.002, 1.38), (0.002, 0.)]),
+            ("laminate, 32x4", "published/laminate", {}, LAMINATE)):
+        results = runs.run(f"{SOURCE}/prm/{scene}.prm", {**settings, "Output/Matrices": True},
+                           os.path.abspath(f"{directory}/others-{os.path.basename(scene)}"))
+        least = results.summary["functional"]
+        yield (title, "Debond", least, 0., results.summary["minimum"]["state"],
+               results.summary["timings_s"]["solve"])
+        for name, J, said, seconds in peers.compare(
+                peers.Problem(results.directory, points), len(points) == 3):
+            yield title, name, J, (J - least) / abs(least), said, seconds
+
+
+def cell(value):
+    return "" if value is None else f"{value:.6g}" if isinstance(value, float) else value
+
+
+def percent(part):
+    return f"{100. * part:+.2g} %" if abs(part) < 10. else ""
+
+
+def write_to_page(name, text):
+    """Replaces the table of the page behind <!-- NAME -->."""
+    page = pathlib.Path(SOURCE, PAGE)
+    head, _, rest = page.read_text().partition(f"<!-- {name} -->\n\n")
+    page.write_text(f"{head}<!-- {name} -->\n\n{text}\n" + rest.partition("\n\n")[2])
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="scripts/published", description="Runs Debond on problems that others have "
+        "published, and prints what they state beside what it finds.")
+    parser.add_argument("problems", metavar="WORD", nargs="*",
+                        help="those whose title has one of these words; all if none")
+    parser.add_argument("--others", action="store_true", help="optimisers of others as well: "
+                        "of scipy, PETSc (python3-petsc4py) and Ipopt (coinor-libipopt1v5)")
+    parser.add_argument("--doc", action="store_true",
+                        help="write all tables and the picture to doc/")
+    parser.add_argument("--debond", help="a program that is built already")
+    options = parser.parse_args()
+    program = os.path.abspath(options.debond or cases.build())
+    tables = {"problems": (
+        ["problem", "source", "quantity", "stated", "Debond", "difference", "accepted",
+         "word or interval", "unknowns", "s"],
+        [[*map(cell, row[:5]), percent(row[5]), f"{100. * chosen.bound:g} %", *row[6:8], f"{row[8]:.2g}" if row[8] else ""]
+         for chosen in PROBLEMS if options.doc or
+         any(word in chosen.title for word in options.problems or [""])
+         for row in chosen.rows(program)])}
+    if options.others or options.doc:
+        tables["others"] = (["problem", "optimiser", "J", "above the least", "says", "s"], [
+            [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
+            for row in others(program)])
+    for name, table in tables.items():
+        text = report.markdown(*table)
+        print("\n" + text, flush=True)
+        if options.doc:
+            write_to_page(name, text)
+    return 0

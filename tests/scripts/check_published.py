@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Published results: Debond differs from what each source states by no more than
+doc/notes/published.md accepts."""
+from common import DEBOND
+
+from debond import published
+
+for problem in published.PROBLEMS:
+    rows = problem.rows(str(DEBOND), "output")
+    assert rows, problem.title
+    for _, _, quantity, stated, value, difference, word, *_ in rows:
+        print(f"{problem.title}, {quantity}: {stated}, computed {value}, {word}")
+        assert abs(difference) <= problem.bound, (problem.title, quantity, stated, value)
