@@ -95,8 +95,8 @@ namespace Debond
         stresses.reinit(cell);
         result.push_back(0.);
         for (const unsigned int q : values.quadrature_point_indices())
-          result.back() += values.JxW(q) * (symmetrize(stresses.gradient(q)) *
-                                            stresses.elastic_stress(q));
+          result.back() +=
+            values.JxW(q) * (stresses.strain(q) * stresses.elastic_stress(q));
       }
     return result;
   }
@@ -309,8 +309,7 @@ namespace Debond
         // that the stresses bound.
         for (const unsigned int q : values.quadrature_point_indices())
           {
-            const dealii::SymmetricTensor<2, dim> epsilon =
-              symmetrize(stresses.gradient(q));
+            const dealii::SymmetricTensor<2, 3> epsilon = stresses.strain(q);
             sum += values.JxW(q) * (0.5 * epsilon * stresses.elastic_stress(q) -
                                     load(dim) * trace(epsilon));
             for (unsigned int d = 0; d < dim; ++d)
@@ -403,7 +402,8 @@ namespace Debond
               for (unsigned int k = 0; k < n_stress_components<dim>; ++k)
                 difference(n_of_part<dim> * part +
                            n_stress_components<dim> * corner + k) -=
-                  stress.access_raw_entry(k);
+                  stress[dealii::SymmetricTensor<2, dim>::
+                           unrolled_to_component_indices(k)];
             }
         gaps.push_back(0.5 *
                        energy_of_parts<dim>(difference,

@@ -57,7 +57,7 @@ namespace Debond
                      const DofVector             &u,
                      const dealii::Function<dim> &exact)
   {
-    dealii::SymmetricTensor<4, dim> stiffness;
+    dealii::SymmetricTensor<4, 3> stiffness;
     const DofVector displacement = problem.unknowns().cartesian_displacement(u);
     CellStresses<dim> cell_stresses(problem.fields(),
                                     displacement,
@@ -72,8 +72,7 @@ namespace Debond
                          const dealii::Tensor<1, dim> &value,
                          const dealii::Tensor<2, dim> &gradient,
                          std::vector<double>          &squares) {
-      const dealii::SymmetricTensor<2, dim> strain =
-        dealii::symmetrize(gradient);
+      const auto strain = resized<3>(dealii::symmetrize(gradient));
       squares[0] += weight * value.norm_square();
       squares[1] += weight * gradient.norm_square();
       squares[2] += weight * (strain * (stiffness * strain));
@@ -84,8 +83,7 @@ namespace Debond
       for (const auto &cell : owned_cells(problem.unknowns().dof_handler()))
         {
           cell_stresses.reinit(cell);
-          stiffness =
-            problem.fields().material(cell).template elasticity_tensor<dim>();
+          stiffness = problem.fields().solid_tensor(cell);
           // The points of the rule are further than twice that from the faces.
           known.set_h(1e-3 * cell->minimum_vertex_distance());
           for (const unsigned int q : values.quadrature_point_indices())

@@ -245,7 +245,7 @@ namespace Debond
         cells.push_back(
           {lambda + 2. * mu,
            material.orthotropy ?
-             orthotropic_yield(of.problem.fields().elasticity_tensor(cell)) :
+             orthotropic_yield(material.template elasticity_tensor<dim>()) :
              1. / mu * dealii::unit_symmetric_tensor<dim>(),
            bubble_energy(of_cell),
            {}});
@@ -254,15 +254,16 @@ namespace Debond
         std::array<double, dim + 1> heat = {};
         if (has_volume_loads)
           heat = add_volume_loads(cell, force);
-        const dealii::SymmetricTensor<2, dim> &of_heat =
-          of.problem.fields().thermal_stress(cell);
+        const dealii::SymmetricTensor<2, dim> of_heat =
+          resized<dim>(of.problem.fields().thermal_stress(cell));
         const double mean =
           std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
-        const dealii::SymmetricTensor<2, dim> in_middle = at_points.stress(0);
+        const dealii::SymmetricTensor<2, dim> in_middle =
+          resized<dim>(at_points.stress(0));
         for (unsigned int v = 0; v < n_stresses; ++v)
           {
             const dealii::SymmetricTensor<2, dim> stress =
-              degree == 2 ? at_points.stress(1 + v) :
+              degree == 2 ? resized<dim>(at_points.stress(1 + v)) :
                             in_middle - (heat[v] - mean) * of_heat;
             const double thermal = heat[v] * dealii::trace(of_heat);
             stresses.push_back(
@@ -284,9 +285,7 @@ namespace Debond
 
         if (cell->is_locally_owned())
           stress_energy +=
-            0.5 * of_cell.measure() *
-            (in_middle *
-             (of.problem.fields().compliance_tensor(cell) * in_middle));
+            of_cell.measure() * material.energy_density(at_points.stress(0));
       }
 
       /// Adds to the force on a cell. Returns the change of temperature at its

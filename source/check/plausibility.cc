@@ -34,7 +34,7 @@ namespace Debond
         means.reinit(cell);
         largest.gradient = std::max(largest.gradient, means.gradient(0).norm());
         largest.von_mises =
-          std::max(largest.von_mises, von_mises(means.solid_stress(0)));
+          std::max(largest.von_mises, von_mises(means.stress(0)));
       }
     const MPI_Comm ranks = problem.unknowns().communicator();
     largest.gradient     = dealii::Utilities::MPI::max(largest.gradient, ranks);

@@ -107,20 +107,32 @@ namespace Debond
 
 
     /// The matrix of a cell for the Cartesian values at its nodes. @p
-    /// stiffness: the elasticity tensor of the material.
+    /// stiffness: Material::solid_tensor().
     template <int dim>
     void
-    set_products(const SimplexValues<dim>              &values,
-                 const Material                        &material,
-                 const dealii::SymmetricTensor<4, dim> &stiffness,
-                 dealii::FullMatrix<double>            &cell_matrix)
+    set_products(const SimplexValues<dim>            &values,
+                 const Material                      &material,
+                 const dealii::SymmetricTensor<4, 3> &stiffness,
+                 dealii::FullMatrix<double>          &cell_matrix)
     {
+      cell_matrix = 0.;
+      if (material.orthotropy)
+        {
+          for (const unsigned int q : values.quadrature_point_indices())
+            for (unsigned int j = 0; j < cell_matrix.n(); ++j)
+              {
+                const dealii::SymmetricTensor<2, 3> stress =
+                  values.JxW(q) *
+                  (stiffness * values.strain(j / dim, j % dim, q));
+                for (unsigned int i = 0; i < cell_matrix.m(); ++i)
+                  cell_matrix(i, j) +=
+                    values.force(stress, i / dim, q)[i % dim];
+              }
+          return;
+        }
       // An isotropic material needs far fewer products.
-      const bool   is_isotropic = !material.orthotropy;
-      const double lambda =
-        is_isotropic ? material.template lame_lambda<dim>() : 0.;
-      const double mu = material.shear_modulus();
-      cell_matrix     = 0.;
+      const double lambda = material.template lame_lambda<dim>();
+      const double mu     = material.shear_modulus();
       for (const unsigned int q : values.quadrature_point_indices())
         for (unsigned int k = 0; k < values.n_nodes(); ++k)
           for (unsigned int l = 0; l < values.n_nodes(); ++l)
@@ -131,16 +143,9 @@ namespace Debond
               const double product = mu * (g * h);
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    double &entry = cell_matrix(dim * k + c, dim * l + d);
-                    if (is_isotropic)
-                      entry += lambda * g[c] * h[d] + mu * g[d] * h[c] +
-                               (c == d ? product : 0.);
-                    else
-                      for (unsigned int i = 0; i < dim; ++i)
-                        for (unsigned int j = 0; j < dim; ++j)
-                          entry += g[i] * stiffness[c][i][d][j] * h[j];
-                  }
+                  cell_matrix(dim * k + c, dim * l + d) +=
+                    lambda * g[c] * h[d] + mu * g[d] * h[c] +
+                    (c == d ? product : 0.);
             }
     }
 
@@ -298,7 +303,7 @@ namespace Debond
         cell_matrix.reinit(n, n);
         set_products(values,
                      elastic_fields->material(cell),
-                     elastic_fields->elasticity_tensor(cell),
+                     elastic_fields->solid_tensor(cell),
                      cell_matrix);
         elastic_unknowns.basis().to_unknowns(cell_dofs, cell_matrix);
         if (cell_dofs.size() > n && cell->is_locally_owned())

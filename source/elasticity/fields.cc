@@ -48,11 +48,8 @@ namespace Debond
                                     const DofVector            &dead_forces)
     : elastic_unknowns(unknowns)
     , materials(materials)
-    , stiffness(materials.transformed([](const Material &material) {
-      return material.elasticity_tensor<dim>();
-    }))
-    , compliance(stiffness.transformed(
-        [](const auto &tensor) { return dealii::invert(tensor); }))
+    , stiffness(materials.transformed(
+        [](const Material &material) { return material.solid_tensor<dim>(); }))
     , thermal_stresses(materials.transformed([](const Material &material) {
       return material.thermal_stress<dim>();
     }))
@@ -89,12 +86,12 @@ namespace Debond
                    elastic_unknowns.cartesian_displacement(u, factors),
                    [&forces](const CellStresses<dim> &cell,
                              const unsigned int       q) {
-                     const dealii::SymmetricTensor<2, dim> sigma =
+                     const dealii::SymmetricTensor<2, 3> sigma =
                        cell.values().JxW(q) * cell.elastic_stress(q);
                      for (unsigned int i = 0; i < cell.dofs().size(); i += dim)
                        {
                          const dealii::Tensor<1, dim> force =
-                           sigma * cell.values().shape_grad(i / dim, q);
+                           cell.values().force(sigma, i / dim, q);
                          for (unsigned int d = 0; d < dim; ++d)
                            forces(cell.dofs()[i + d]) += force[d];
                        }
@@ -128,9 +125,9 @@ namespace Debond
                        size_gradient +=
                          sizes(dofs[i]) *
                          cell.values().shape_grad(i / dim, q).norm();
-                     const double size_stress =
-                       cell.values().JxW(q) * cell.elasticity_tensor().norm() *
-                       size_gradient;
+                     const double size_stress = cell.values().JxW(q) *
+                                                cell.solid_tensor().norm() *
+                                                size_gradient;
                      for (unsigned int i = 0; i < dofs.size(); ++i)
                        rounding(dofs[i]) +=
                          size_stress *
@@ -220,13 +217,13 @@ namespace Debond
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
                     result;
     const DofVector displacement = elastic_unknowns.lifted(u, factors);
-    for_each_point(
-      *this,
-      elastic_unknowns.basis().to_nodal(displacement),
-      [&result](const CellStresses<dim> &cell, const unsigned int q) {
-        result(0.5 * cell.values().JxW(q) *
-               (dealii::symmetrize(cell.gradient(q)) * cell.elastic_stress(q)));
-      });
+    for_each_point(*this,
+                   elastic_unknowns.basis().to_nodal(displacement),
+                   [&result](const CellStresses<dim> &cell,
+                             const unsigned int       q) {
+                     result(0.5 * cell.values().JxW(q) *
+                            (cell.strain(q) * cell.elastic_stress(q)));
+                   });
     for (const auto i : elastic_unknowns.dof_handler().locally_owned_dofs())
       result(-load(i) * displacement(i));
     return dealii::Utilities::MPI::sum(accumulators::sum_kahan(result),
@@ -291,29 +288,29 @@ namespace Debond
 
 
   template <int dim>
-  dealii::SymmetricTensor<2, dim>
-  CellStresses<dim>::elastic_stress(const unsigned int q) const
+  dealii::SymmetricTensor<2, 3>
+  CellStresses<dim>::strain(const unsigned int q) const
   {
-    return elasticity_tensor() * dealii::symmetrize(gradient(q));
-  }
-
-
-
-  template <int dim>
-  dealii::SymmetricTensor<2, dim>
-  CellStresses<dim>::stress(const unsigned int q) const
-  {
-    return elastic_stress(q) -
-           temperature_change(q) * fields.thermal_stress(cell);
+    return resized<3>(dealii::symmetrize(gradient(q)));
   }
 
 
 
   template <int dim>
   dealii::SymmetricTensor<2, 3>
-  CellStresses<dim>::solid_stress(const unsigned int q) const
+  CellStresses<dim>::elastic_stress(const unsigned int q) const
   {
-    return fields.material(cell).solid_stress(stress(q), temperature_change(q));
+    return solid_tensor() * strain(q);
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  CellStresses<dim>::stress(const unsigned int q) const
+  {
+    return elastic_stress(q) -
+           temperature_change(q) * fields.thermal_stress(cell);
   }
 
 

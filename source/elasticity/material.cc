@@ -59,21 +59,6 @@ namespace Debond
 
 
 
-    /// The components that both dimensions have; the others are zero.
-    template <int to, int from>
-    dealii::SymmetricTensor<2, to>
-    resized(const dealii::SymmetricTensor<2, from> &tensor)
-    {
-      constexpr unsigned int         n = to < from ? to : from;
-      dealii::SymmetricTensor<2, to> result;
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = i; j < n; ++j)
-          result[i][j] = tensor[i][j];
-      return result;
-    }
-
-
-
     /// The reason why energies are not positive; empty if they are.
     std::string
     fault(const Orthotropy &material)
@@ -207,15 +192,41 @@ namespace Debond
 
 
   template <int dim>
-  dealii::SymmetricTensor<2, dim>
+  dealii::SymmetricTensor<2, 3>
   Material::thermal_stress() const
+  {
+    return solid_tensor<dim>() * thermal_strain();
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<4, 3>
+  Material::solid_tensor() const
   {
     const bool is_plane_stress =
       dim == 2 && hypothesis == Hypothesis::plane_stress;
-    const Solid<2> strain = thermal_strain();
+    Solid<4> result;
+    if (orthotropy)
+      {
+        result =
+          dealii::invert(dealii::Physics::Transformations::basis_transformation(
+            compliance_along_axes(), rotation(axis_angle)));
+        Solid<2> across;
+        across[2][2] = 1.;
+        if (is_plane_stress)
+          {
+            const Solid<2> stress = result * across;
+            result -= dealii::outer_product(stress, stress) / stress[2][2];
+          }
+        return result;
+      }
+    Solid<2> identity = dealii::unit_symmetric_tensor<3>();
+    result            = 2. * shear_modulus() * dealii::identity_tensor<3>();
     if (is_plane_stress)
-      return elasticity_tensor<dim>() * resized<dim>(strain);
-    return resized<dim>(elasticity_tensor<3>() * strain);
+      identity[2][2] = result[2][2][2][2] = 0.;
+    return result +
+           lame_lambda<dim>() * dealii::outer_product(identity, identity);
   }
 
 
@@ -224,18 +235,7 @@ namespace Debond
   dealii::SymmetricTensor<4, dim>
   Material::elasticity_tensor() const
   {
-    if (orthotropy)
-      {
-        const Solid<4> compliance =
-          dealii::Physics::Transformations::basis_transformation(
-            compliance_along_axes(), rotation(axis_angle));
-        return dim == 2 && hypothesis == Hypothesis::plane_stress ?
-                 dealii::invert(part_of<dim>(compliance)) :
-                 part_of<dim>(dealii::invert(compliance));
-      }
-    const auto identity = dealii::unit_symmetric_tensor<dim>();
-    return lame_lambda<dim>() * dealii::outer_product(identity, identity) +
-           2. * shear_modulus() * dealii::identity_tensor<dim>();
+    return part_of<dim>(solid_tensor<dim>());
   }
 
 
@@ -255,31 +255,6 @@ namespace Debond
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
              matrix, Eigen::EigenvaluesOnly)
       .eigenvalues()(0);
-  }
-
-
-
-  template <int dim>
-  dealii::SymmetricTensor<2, 3>
-  Material::solid_stress(const dealii::SymmetricTensor<2, dim> &stress,
-                         const double temperature_change) const
-  {
-    Solid<2> s = resized<3>(stress);
-    if (dim == 2 && hypothesis == Hypothesis::plane_strain)
-      {
-        // No strain along z.
-        const double free_strain = temperature_change * thermal_expansions[2];
-        if (!orthotropy)
-          s[2][2] =
-            poisson_ratio * dealii::trace(stress) - young_modulus * free_strain;
-        else
-          {
-            const Solid<4> compliance = compliance_along_axes();
-            s[2][2] = -((compliance * along_axes(s))[2][2] + free_strain) /
-                      compliance[2][2][2][2];
-          }
-      }
-    return s;
   }
 
 
@@ -354,10 +329,14 @@ namespace Debond
   Material::lame_lambda<2>() const;
   template double
   Material::lame_lambda<3>() const;
-  template dealii::SymmetricTensor<2, 2>
+  template dealii::SymmetricTensor<2, 3>
   Material::thermal_stress<2>() const;
   template dealii::SymmetricTensor<2, 3>
   Material::thermal_stress<3>() const;
+  template dealii::SymmetricTensor<4, 3>
+  Material::solid_tensor<2>() const;
+  template dealii::SymmetricTensor<4, 3>
+  Material::solid_tensor<3>() const;
   template dealii::SymmetricTensor<4, 2>
   Material::elasticity_tensor<2>() const;
   template dealii::SymmetricTensor<4, 3>
@@ -366,10 +345,4 @@ namespace Debond
   Material::least_stiffness<2>() const;
   template double
   Material::least_stiffness<3>() const;
-  template dealii::SymmetricTensor<2, 3>
-  Material::solid_stress(const dealii::SymmetricTensor<2, 2> &,
-                         const double) const;
-  template dealii::SymmetricTensor<2, 3>
-  Material::solid_stress(const dealii::SymmetricTensor<2, 3> &,
-                         const double) const;
 } // namespace Debond

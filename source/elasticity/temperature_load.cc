@@ -84,16 +84,15 @@ namespace Debond
       {
         values.reinit(*cell);
         cell->get_dof_indices(dofs);
-        const dealii::SymmetricTensor<2, dim> &stress =
+        const dealii::SymmetricTensor<2, 3> &stress =
           stresses(cell->material_id());
         for (const unsigned int q : values.quadrature_point_indices())
           {
             const double change =
               temperature_changes[cell->active_cell_index() * n_points + q];
             for (unsigned int i = 0; i < dofs.size(); ++i)
-              forces(dofs[i]) +=
-                values.JxW(q) * change *
-                (stress * values.shape_grad(i / dim, q))[i % dim];
+              forces(dofs[i]) += values.JxW(q) * change *
+                                 values.force(stress, i / dim, q)[i % dim];
           }
       }
   }

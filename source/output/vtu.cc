@@ -125,7 +125,7 @@ namespace Debond
         {
           next = 0;
           means.reinit(cell);
-          const auto         stress = means.solid_stress(0);
+          const auto         stress = means.stress(0);
           const unsigned int index  = cell->active_cell_index();
           for (unsigned int c = 0; c < components.size(); ++c)
             add(components[c].c_str(),

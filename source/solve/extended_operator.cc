@@ -34,7 +34,7 @@ namespace Debond
         cell.lambda              = material.lame_lambda<dim>();
         cell.mu                  = material.shear_modulus();
         if (material.orthotropy)
-          cell.stiffness = &problem.fields().elasticity_tensor(dof_cell);
+          cell.stiffness = &problem.fields().solid_tensor(dof_cell);
         cells.push_back(cell);
       }
   }

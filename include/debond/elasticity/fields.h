@@ -68,21 +68,15 @@ namespace Debond
     DofVector
     residual_rounding(const DofVector &u, const LoadFactors factors = 1.) const;
 
-    const dealii::SymmetricTensor<4, dim> &
-    elasticity_tensor(const Cell &cell) const
+    /// Material::solid_tensor().
+    const dealii::SymmetricTensor<4, 3> &
+    solid_tensor(const Cell &cell) const
     {
       return stiffness(cell->material_id());
     }
 
-    /// Its inverse.
-    const dealii::SymmetricTensor<4, dim> &
-    compliance_tensor(const Cell &cell) const
-    {
-      return compliance(cell->material_id());
-    }
-
     /// Material::thermal_stress().
-    const dealii::SymmetricTensor<2, dim> &
+    const dealii::SymmetricTensor<2, 3> &
     thermal_stress(const Cell &cell) const
     {
       return thermal_stresses(cell->material_id());
@@ -131,13 +125,13 @@ namespace Debond
                const LoadFactors factors,
                const DofVector  &load) const;
 
-    const ElasticUnknowns<dim>               &elastic_unknowns;
-    ByRegion<Material>                        materials;
-    ByRegion<dealii::SymmetricTensor<4, dim>> stiffness, compliance;
-    ByRegion<dealii::SymmetricTensor<2, dim>> thermal_stresses;
-    DofVector                                 live_forces;
-    DofVector                                 dead_forces; ///< or empty
-    std::vector<double>                       temperature_changes;
+    const ElasticUnknowns<dim>             &elastic_unknowns;
+    ByRegion<Material>                      materials;
+    ByRegion<dealii::SymmetricTensor<4, 3>> stiffness;
+    ByRegion<dealii::SymmetricTensor<2, 3>> thermal_stresses;
+    DofVector                               live_forces;
+    DofVector                               dead_forces; ///< or empty
+    std::vector<double>                     temperature_changes;
   };
 
 
@@ -193,10 +187,10 @@ namespace Debond
     void
     reinit(const Cell &cell);
 
-    const dealii::SymmetricTensor<4, dim> &
-    elasticity_tensor() const
+    const dealii::SymmetricTensor<4, 3> &
+    solid_tensor() const
     {
-      return fields.elasticity_tensor(cell);
+      return fields.solid_tensor(cell);
     }
 
     /// The shape functions in the cell, of each component.
@@ -220,18 +214,18 @@ namespace Debond
     dealii::Tensor<2, dim>
     gradient(const unsigned int q) const;
 
-    /// C eps: without thermal stresses.
-    dealii::SymmetricTensor<2, dim>
+    /// The strain of the solid, whose components across a plane body are zero.
+    dealii::SymmetricTensor<2, 3>
+    strain(const unsigned int q) const;
+
+    /// C eps: without thermal stresses, as are those of the solid that the
+    /// hypothesis implies across a plane body.
+    dealii::SymmetricTensor<2, 3>
     elastic_stress(const unsigned int q) const;
 
     /// The stress with that of the temperature, in the units of E.
-    dealii::SymmetricTensor<2, dim>
-    stress(const unsigned int q) const;
-
-    /// Returns stress() together with the stress out of the plane that the
-    /// hypothesis implies.
     dealii::SymmetricTensor<2, 3>
-    solid_stress(const unsigned int q) const;
+    stress(const unsigned int q) const;
 
   private:
     double

@@ -95,12 +95,19 @@ namespace Debond
     /// The stress that a temperature change of one gives a body that cannot
     /// move is minus this: of an isotropic one (3 lambda + 2 mu) alpha times
     /// the identity with the lambda of the solid, in plane stress E alpha / (1
-    /// - nu).
+    /// - nu) in the plane.
     template <int dim>
-    dealii::SymmetricTensor<2, dim>
+    dealii::SymmetricTensor<2, 3>
     thermal_stress() const;
 
-    /// The tensor of sigma = E(epsilon), eq. (3).
+    /// The tensor that takes the strain of the solid to its stress. In plane
+    /// stress the component across the plane is zero, whatever its strain is
+    /// given as.
+    template <int dim>
+    dealii::SymmetricTensor<4, 3>
+    solid_tensor() const;
+
+    /// The tensor of sigma = E(epsilon), eq. (3), in the plane or in 3D.
     template <int dim>
     dealii::SymmetricTensor<4, dim>
     elasticity_tensor() const;
@@ -110,14 +117,7 @@ namespace Debond
     double
     least_stiffness() const;
 
-    /// The stress of the solid body: @p stress, with the out-of-plane stress
-    /// that the hypothesis implies at a change of temperature.
-    template <int dim>
-    dealii::SymmetricTensor<2, 3>
-    solid_stress(const dealii::SymmetricTensor<2, dim> &stress,
-                 const double temperature_change = 0.) const;
-
-    /// The strain energy per volume of that stress.
+    /// The strain energy per volume of a stress of the solid.
     double
     energy_density(const dealii::SymmetricTensor<2, 3> &stress) const;
 
@@ -134,6 +134,19 @@ namespace Debond
     dealii::SymmetricTensor<2, 3>
     thermal_strain() const;
   };
+
+  /// The components that both dimensions have; the others are zero.
+  template <int to, int from>
+  dealii::SymmetricTensor<2, to>
+  resized(const dealii::SymmetricTensor<2, from> &tensor)
+  {
+    constexpr unsigned int         n = to < from ? to : from;
+    dealii::SymmetricTensor<2, to> result;
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = i; j < n; ++j)
+        result[i][j] = tensor[i][j];
+    return result;
+  }
 
   /// Von Mises' equivalent stress.
   double

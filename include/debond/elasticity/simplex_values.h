@@ -4,6 +4,7 @@
 
 #include <deal.II/base/quadrature.h>
 #include <deal.II/base/std_cxx20/iota_view.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe.h>
 #include <deal.II/grid/tria_accessor.h>
 
@@ -55,6 +56,34 @@ namespace Debond
     shape_grad(const unsigned int node, const unsigned int q) const
     {
       return gradients[q * nodes + node];
+    }
+
+    /// The forces of a stress on the components of a node, per volume: its work
+    /// on the strains that they make.
+    dealii::Tensor<1, dim>
+    force(const dealii::SymmetricTensor<2, 3> &stress,
+          const unsigned int                   node,
+          const unsigned int                   q) const
+    {
+      const dealii::Tensor<1, dim> &gradient = shape_grad(node, q);
+      dealii::Tensor<1, dim>        result;
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[c] += stress[c][d] * gradient[d];
+      return result;
+    }
+
+    /// The strain of the solid that a component of a node makes.
+    dealii::SymmetricTensor<2, 3>
+    strain(const unsigned int node,
+           const unsigned int component,
+           const unsigned int q) const
+    {
+      const dealii::Tensor<1, dim> &gradient = shape_grad(node, q);
+      dealii::SymmetricTensor<2, 3> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[component][d] = (d == component ? 1. : 0.5) * gradient[d];
+      return result;
     }
 
     double

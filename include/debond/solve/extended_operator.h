@@ -52,7 +52,7 @@ namespace Debond
       long double mu;
 
       /// In place of them if the material is orthotropic.
-      const dealii::SymmetricTensor<4, dim> *stiffness = nullptr;
+      const dealii::SymmetricTensor<4, 3> *stiffness = nullptr;
     };
 
     void
