@@ -37,15 +37,16 @@ namespace Debond
 
 
     /// The part of a face where a function of its barycentric coordinates is
-    /// positive: that of the linear interpolant on equal pieces.
-    template <int dim, typename Function>
+    /// positive: that of the linear interpolant on equal pieces, which count
+    /// by their @p density.
+    template <int dim, typename Function, typename Density>
     double
-    positive_part_on_pieces(const Function &function)
+    positive_part_on_pieces(const Function &function, const Density &density)
     {
       constexpr unsigned int n   = dim == 2 ? 1024 : 32;
       double                 sum = 0.;
       for_each_part<dim - 1>(n, [&](const auto &corners) {
-        std::array<double, dim> values;
+        std::array<double, dim> values, middle = {};
         for (unsigned int k = 0; k < dim; ++k)
           {
             std::array<double, dim> coordinates = {{1.}};
@@ -55,8 +56,10 @@ namespace Debond
                 coordinates[0] -= coordinates[d];
               }
             values[k] = function(coordinates);
+            for (unsigned int d = 0; d < dim; ++d)
+              middle[d] += coordinates[d] / dim;
           }
-        sum += positive_part(values);
+        sum += positive_part(values) * density(middle);
       });
       return sum / (dim == 2 ? n : n * n);
     }
@@ -122,6 +125,9 @@ namespace Debond
                    0. :
                    law.bond_threshold() * bonds.stretch;
         };
+        const auto density = [&](const std::array<double, dim> &place) {
+          return boundary.density(face, place);
+        };
         // In shear what is closed may be broken, and slide.
         const auto gap_beyond =
           [&](const std::array<double, dim> &coordinates) {
@@ -133,7 +139,8 @@ namespace Debond
         if (adhesion.shears() &&
             adhesion.points().point_at(face, middle).shears())
           {
-            sum += face.measure * positive_part_on_pieces<dim>(gap_beyond);
+            sum +=
+              face.measure * positive_part_on_pieces<dim>(gap_beyond, density);
             continue;
           }
         const auto              trace = adhesion.points().trace_on(face, s);
@@ -154,9 +161,11 @@ namespace Debond
           sum += face.measure;
         else if (-least > *low)
           // Closed cracks are not open.
-          sum += face.measure * (boundary.degree == 1 && n_without % dim == 0 ?
-                                   positive_part(beyond) :
-                                   positive_part_on_pieces<dim>(gap_beyond));
+          sum += face.measure *
+                 (boundary.degree == 1 && n_without % dim == 0 &&
+                      boundary.symmetry == Symmetry::none ?
+                    positive_part(beyond) :
+                    positive_part_on_pieces<dim>(gap_beyond, density));
       }
     return sum;
   }

@@ -141,6 +141,7 @@ namespace Debond
         : of(of)
         , degree(of.problem.unknowns().degree())
         , boundary(of.problem.unknowns().contact().boundary())
+        , symmetry(of.problem.unknowns().symmetry())
         , s(of.problem.unknowns().contact().trace(u))
         , load_factor(factors.loads)
         , has_volume_loads(
@@ -154,7 +155,7 @@ namespace Debond
                     factors,
                     stress_points<dim>(degree))
         , fe(1)
-        , at_loads(fe, dealii::QGaussSimplex<dim>(2))
+        , at_loads(fe, dealii::QGaussSimplex<dim>(2), Symmetry::none)
         , on_face(of.problem.unknowns().mapping(),
                   fe,
                   face_rule<dim>(1),
@@ -241,40 +242,57 @@ namespace Debond
         const Material           &material = of.problem.fields().material(cell);
         const double              mu       = material.shear_modulus();
         const double              lambda = material.template lame_lambda<dim>();
-        const double part_of_lambda      = lambda / (2. * mu + dim * lambda);
+        const bool                has_axis = symmetry == Symmetry::axis;
+        const double around         = circumference(symmetry, cell->center());
+        const int    n_traced       = has_axis ? 3 : dim;
+        const double part_of_lambda = lambda / (2. * mu + n_traced * lambda);
         cells.push_back(
           {lambda + 2. * mu,
            material.orthotropy ?
              orthotropic_yield(material.template elasticity_tensor<dim>()) :
              1. / mu * dealii::unit_symmetric_tensor<dim>(),
-           bubble_energy(of_cell),
+           around * bubble_energy(of_cell),
            {}});
         dealii::Tensor<1, dim> &force = cells.back().force;
 
         std::array<double, dim + 1> heat = {};
         if (has_volume_loads)
           heat = add_volume_loads(cell, force);
-        const dealii::SymmetricTensor<2, dim> of_heat =
-          resized<dim>(of.problem.fields().thermal_stress(cell));
-        const double mean =
+        // Strains across a plane body count around an axis only.
+        using Stress3    = dealii::SymmetricTensor<2, 3>;
+        const auto trace = [has_axis](const Stress3 &of_solid) {
+          return has_axis ? dealii::trace(of_solid) :
+                            dealii::trace(resized<dim>(of_solid));
+        };
+        const Stress3 &of_heat = of.problem.fields().thermal_stress(cell);
+        const double   mean =
           std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
-        const dealii::SymmetricTensor<2, dim> in_middle =
-          resized<dim>(at_points.stress(0));
+        const Stress3 in_middle = at_points.stress(0);
         for (unsigned int v = 0; v < n_stresses; ++v)
           {
-            const dealii::SymmetricTensor<2, dim> stress =
-              degree == 2 ? resized<dim>(at_points.stress(1 + v)) :
-                            in_middle - (heat[v] - mean) * of_heat;
-            const double thermal = heat[v] * dealii::trace(of_heat);
+            const Stress3 stress  = degree == 2 ?
+                                      at_points.stress(1 + v) :
+                                      in_middle - (heat[v] - mean) * of_heat;
+            const double  thermal = heat[v] * trace(of_heat);
             stresses.push_back(
-              {stress,
+              {resized<dim>(stress),
                material.orthotropy ?
                  0. :
-                 thermal / dim -
-                   part_of_lambda * (dealii::trace(stress) + thermal)});
+                 thermal / n_traced -
+                   part_of_lambda * (trace(stress) + thermal)});
             if (n_stresses > 1)
               force +=
-                of_cell.measure() * (stress * of_cell.barycentric_gradient(v));
+                around * of_cell.measure() *
+                (stresses.back().whole * of_cell.barycentric_gradient(v));
+          }
+        if (has_axis)
+          {
+            // The rest of the divergence, (sigma_rr - sigma_tt, sigma_rz) / r.
+            dealii::Tensor<1, dim> rest;
+            for (unsigned int d = 0; d < dim; ++d)
+              rest[d] = in_middle[0][d];
+            rest[0] -= in_middle[2][2];
+            force += around * of_cell.measure() / cell->center()[0] * rest;
           }
         if (degree == 2)
           {
@@ -285,7 +303,7 @@ namespace Debond
 
         if (cell->is_locally_owned())
           stress_energy +=
-            of_cell.measure() * material.energy_density(at_points.stress(0));
+            around * of_cell.measure() * material.energy_density(in_middle);
       }
 
       /// Adds to the force on a cell. Returns the change of temperature at its
@@ -299,10 +317,12 @@ namespace Debond
         for (const unsigned int q : at_loads.quadrature_point_indices())
           {
             const dealii::Point<dim> point = at_loads.quadrature_point(q);
+            const double             around =
+              at_loads.JxW(q) * circumference(symmetry, point);
             if (of.loads.body_force)
-              force += load_factor * at_loads.JxW(q) * of.loads.force_at(point);
+              force += load_factor * around * of.loads.force_at(point);
             if (of.dead_loads != nullptr && of.dead_loads->body_force)
-              force += at_loads.JxW(q) * of.dead_loads->force_at(point);
+              force += around * of.dead_loads->force_at(point);
             if (!of.loads.temperature_change)
               continue;
             const double change =
@@ -346,8 +366,12 @@ namespace Debond
         unsigned int opposite = dim * (dim + 1) / 2;
         for (const unsigned int vertex : in_cell)
           opposite -= vertex;
+        dealii::Point<dim> middle;
+        for (const unsigned int vertex : in_cell)
+          middle += cell->vertex(vertex) / static_cast<double>(dim);
         return {cell->active_cell_index(),
-                -dim * at_points.values().measure() *
+                -dim * circumference(symmetry, middle) *
+                  at_points.values().measure() *
                   at_points.values().barycentric_gradient(opposite),
                 in_cell};
       }
@@ -456,10 +480,12 @@ namespace Debond
         if (of.conditions.clamped.count(id) > 0)
           return;
 
-        const Face                   face    = face_of(cell, f);
-        const DoneCell              &here    = cells[face.cell];
-        const double                 measure = face.area.norm();
-        const dealii::Tensor<1, dim> normal  = face.area / measure;
+        const Face      face    = face_of(cell, f);
+        const DoneCell &here    = cells[face.cell];
+        const double    measure = face.area.norm();
+        if (measure == 0.) // on the axis
+          return;
+        const dealii::Tensor<1, dim> normal = face.area / measure;
         on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
                        f);
         double square = 0.;
@@ -486,7 +512,8 @@ namespace Debond
                   with_foundation(r, face, boundary.faces[contact_face], there);
               }
             r = free_part(r, normal, id);
-            square += on_face.JxW(q) / measure * (r * (here.yield * r));
+            square += on_face.JxW(q) * circumference(symmetry, point) /
+                      measure * (r * (here.yield * r));
           }
         parts[face.cell] +=
           fall(square * measure * measure, here.bubble_energy);
@@ -611,6 +638,7 @@ namespace Debond
       const EstimatedProblem<dim>    of;
       const unsigned int             degree;
       const ContactBoundary<dim>    &boundary;
+      const Symmetry                 symmetry;
       const Eigen::VectorXd          s;
       const double                   load_factor;
       const bool                     has_volume_loads;

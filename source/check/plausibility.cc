@@ -67,12 +67,10 @@ namespace Debond
         {
           const double strength =
             law.bond_strength() * bonds.energy / bonds.stretch;
-          const double size =
-            dim == 2 ? face.measure : 2. * std::sqrt(face.measure);
           double &faces = faces_by_modulus[face.cell];
-          faces =
-            std::min(faces,
-                     energy * bonds.energy / (strength * strength * size));
+          faces         = std::min(faces,
+                           energy * bonds.energy /
+                             (strength * strength * face.size()));
         }
     double least = infinity;
     for (const auto &cell : owned_cells(handler))

@@ -464,8 +464,11 @@ namespace Debond
                                         static_cast<unsigned int>(dof / dim)))
               {
                 force = force * row->to_unknowns;
+                // The axis holds nodes without being a support.
                 for (const auto &[other, weight] : row->others)
-                  result.reactions[names[of_node.at(other)]] -= weight * force;
+                  if (const auto held = of_node.find(other);
+                      held != of_node.end())
+                    result.reactions[names[held->second]] -= weight * force;
               }
           result.reactions[names[support]] += force;
         }
@@ -518,7 +521,8 @@ namespace Debond
       DofVector                   clamped(unknowns.n_dofs());
       DofVector                   tangential(unknowns.n_dofs());
       for (const auto &line : unknowns.constraints().get_lines())
-        tangential(line.index) = residual(line.index);
+        if (unknowns.on_axis().count(line.index / dim) == 0)
+          tangential(line.index) = residual(line.index);
       for (const auto &[dof, unused] : unknowns.supported())
         {
           clamped(dof)    = residual(dof);
@@ -560,8 +564,13 @@ namespace Debond
       for (unsigned int i = 0; i < all.size(); ++i)
         sums[unknowns.body_of(i / dim)][i % dim] += all(i);
       double imbalance = 0.;
-      for (const dealii::Tensor<1, dim> &sum : sums)
-        imbalance = std::max(imbalance, sum.norm());
+      for (dealii::Tensor<1, dim> &sum : sums)
+        {
+          // Away from an axis hoop stresses hold what loads do not.
+          if (unknowns.symmetry() == Symmetry::axis)
+            sum[0] = 0.;
+          imbalance = std::max(imbalance, sum.norm());
+        }
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
     }

@@ -125,11 +125,11 @@ namespace Debond
         if (!face.is_held(k))
           nodes[face.node(k)].add(
             field->at(contact.nodes[face.node(k)].position, face.id),
-            face.measure);
+            contact.integral(face, k));
         else if (!held.empty())
           held[face.held_at(k)].add(
             field->at(contact.held_vertices[face.held_at(k)].position, face.id),
-            face.measure);
+            contact.integral(face, k));
         else if (k < dim)
           // A field has to have a value at all vertices, so that a fault in it
           // does not depend on the supports.
@@ -160,7 +160,8 @@ namespace Debond
           // out, so that a point on a vertex depends on this vertex alone.
           const Trace shape = bernstein(in_rule.barycentric, contact.degree);
           ContactPoint<dim> point;
-          point.weight   = in_rule.weight * face.measure;
+          point.weight = in_rule.weight * face.measure *
+                         contact.density(face, in_rule.centroid);
           point.bonds    = bonds_at_first(face, in_rule.barycentric);
           const auto add = [&](const unsigned int index, const unsigned int k) {
             point.index[point.n_entries] = index;

@@ -62,10 +62,8 @@ namespace Debond
         if (is_new)
           {
             normals.emplace_back();
-            measures.push_back(0.);
           }
         normals[groups[f]] += face_measures[f] * face_normals[f];
-        measures[groups[f]] += face_measures[f] / dim;
       }
     for (auto &normal : normals)
       {

@@ -164,7 +164,8 @@ namespace Debond
         , constrained(constrained)
         , places(faces.size())
       {
-        boundary.degree = degree;
+        boundary.degree   = degree;
+        boundary.symmetry = conditions.symmetry;
         find_vertices(conditions);
         for (auto &[index, vertex] : vertices)
           make_nodes(index, vertex);
@@ -211,6 +212,12 @@ namespace Debond
       find_vertices(const BoundaryConditions &conditions)
       {
         for (unsigned int f = 0; f < faces.size(); ++f)
+          if (is_on_axis(faces[f]))
+            throw EntryError("Boundary conditions/Contact boundary",
+                             "the axis is no boundary of a body of revolution, "
+                             "at " +
+                               point_text(faces[f].positions[0]));
+        for (unsigned int f = 0; f < faces.size(); ++f)
           for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
             {
               ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
@@ -226,6 +233,13 @@ namespace Debond
                 vertex.is_bonded || conditions.tangential(faces[f].id) ==
                                       TangentialDisplacement::bonded;
             }
+      }
+
+      bool
+      is_on_axis(const BoundaryFace<dim> &face) const
+      {
+        return node_supports.on_axis().count(face.indices[0]) > 0 &&
+               node_supports.on_axis().count(face.indices[1]) > 0;
       }
 
       /// Returns whether a face is joined at a vertex to one with another
@@ -289,7 +303,7 @@ namespace Debond
           if (std::abs(row.value - multiple * (row.direction * normal)) >
               rounding * largest)
             throw SupportError(SupportError::Subject::displacement,
-                               node_supports.names()[row.support],
+                               node_supports.name(row.support),
                                "the displacement at " +
                                  point_text(prescribed.position) +
                                  " is prescribed otherwise by Tangential "
@@ -350,7 +364,7 @@ namespace Debond
             "vertices.");
         if (unknown.size() + prescribed.rows.size() > dim)
           throw SupportError(SupportError::Subject::displacement,
-                             node_supports.names()[prescribed.rows[0].support],
+                             node_supports.name(prescribed.rows[0].support),
                              "too much is prescribed at " +
                                point_text(vertex.position) +
                                ", where contact sides meet");
@@ -363,8 +377,15 @@ namespace Debond
       make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
       {
         const VertexNormals<dim> groups(vertex.normals, vertex.measures);
-        const std::vector<dealii::Tensor<1, dim>> &normals = groups.normals;
-        vertex.groups                                      = groups.groups;
+        std::vector<dealii::Tensor<1, dim>> normals = groups.normals;
+        // Across the axis is the same face once more.
+        if (node_supports.on_axis().count(index) > 0)
+          for (dealii::Tensor<1, dim> &normal : normals)
+            {
+              normal[0] = 0.;
+              normal /= normal.norm();
+            }
+        vertex.groups                  = groups.groups;
         const std::vector<double> gaps = gaps_of(index, vertex, normals.size());
         PrescribedNode<dim>       prescribed =
           node_supports.at(index, vertex.position);
@@ -384,9 +405,6 @@ namespace Debond
         vertex.nodes.assign(normals.size(), no_node);
         vertex.held.assign(normals.size(), 0);
         std::vector<dealii::Tensor<1, dim>> directions;
-        // All basis functions of a face have the same integral.
-        const double part_of_face =
-          static_cast<double>(dim) / boundary.n_face_nodes();
         for (const unsigned int k : unknown)
           {
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
@@ -394,10 +412,7 @@ namespace Debond
                                   static_cast<unsigned int>(directions.size()));
             constrained.set_gap(normal_dofs.back(), gaps[k]);
             directions.push_back(normals[k]);
-            nodes.push_back({vertex.position,
-                             normals[k],
-                             part_of_face * groups.measures[k],
-                             gaps[k]});
+            nodes.push_back({vertex.position, normals[k], 0., gaps[k]});
           }
 
         std::array<unsigned int, 2> supports{
@@ -482,7 +497,7 @@ namespace Debond
                       });
         if (is_held && !is_normal_known)
           throw SupportError(SupportError::Subject::displacement,
-                             node_supports.names()[prescribed.rows[0].support],
+                             node_supports.name(prescribed.rows[0].support),
                              "at " + point_text(prescribed.position) +
                                " it is neither along the contact boundary nor "
                                "across it, which bonds that shear need");
@@ -501,10 +516,14 @@ namespace Debond
           {
             typename ContactBoundary<dim>::Face face;
             std::copy_n(faces[f].positions.begin(), dim, face.vertices.begin());
-            face.normal  = faces[f].normal;
-            face.measure = faces[f].measure;
-            face.id      = faces[f].id;
-            face.cell    = faces[f].cell;
+            dealii::Point<dim> middle;
+            for (const dealii::Point<dim> &corner : face.vertices)
+              middle += corner / static_cast<double>(dim);
+            face.normal = faces[f].normal;
+            face.measure =
+              faces[f].measure * circumference(boundary.symmetry, middle);
+            face.id   = faces[f].id;
+            face.cell = faces[f].cell;
             for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
               {
                 unsigned int &face_node =
@@ -519,6 +538,9 @@ namespace Debond
                 face_held = vertex.held[group];
                 if (node == no_node)
                   boundary.held_vertices[face_held].boundary = faces[f].id;
+                else
+                  boundary.nodes[face_node].measure +=
+                    boundary.integral(face, v);
               }
             boundary.faces.push_back(face);
           }

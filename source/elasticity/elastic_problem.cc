@@ -116,7 +116,7 @@ namespace Debond
                  dealii::FullMatrix<double>          &cell_matrix)
     {
       cell_matrix = 0.;
-      if (material.orthotropy)
+      if (material.orthotropy || values.has_axis())
         {
           for (const unsigned int q : values.quadrature_point_indices())
             for (unsigned int j = 0; j < cell_matrix.n(); ++j)
@@ -188,17 +188,19 @@ namespace Debond
       return true;
     });
     notes.clear();
-    const MPI_Comm      ranks = elastic_unknowns.communicator();
+    const MPI_Comm      ranks    = elastic_unknowns.communicator();
+    const Symmetry      symmetry = elastic_unknowns.symmetry();
     std::vector<double> temperatures;
     DofVector           applied_forces, dead_forces;
     on_all_ranks(ranks, [&]() {
       temperatures   = temperature_changes(dofs.get_triangulation(),
                                          loads,
                                          dofs.get_fe().degree);
-      applied_forces = load_vector(dofs, loads, &notes);
-      add_thermal_forces(dofs, materials, temperatures, applied_forces);
+      applied_forces = load_vector(dofs, loads, symmetry, &notes);
+      add_thermal_forces(
+        dofs, materials, temperatures, symmetry, applied_forces);
       if (dead_loads.body_force || !dead_loads.tractions.empty())
-        dead_forces = load_vector(dofs, dead_loads, &notes);
+        dead_forces = load_vector(dofs, dead_loads, symmetry, &notes);
     });
     notes = union_of_ranks(notes, ranks);
     add_over_ranks(applied_forces, ranks);
@@ -248,7 +250,8 @@ namespace Debond
   {
     const auto                &dofs = elastic_unknowns.dof_handler();
     SimplexValues<dim>         values(dofs.get_fe().base_element(0),
-                              strain_rule<dim>(elastic_unknowns.degree()));
+                              strain_rule<dim>(elastic_unknowns.degree()),
+                              elastic_unknowns.symmetry());
     const unsigned int         n = dofs.get_fe().dofs_per_cell;
     dealii::FullMatrix<double> cell_matrix;
     std::vector<dealii::types::global_dof_index> cell_dofs;

@@ -119,19 +119,21 @@ namespace Debond
     for_each_point(*this,
                    displacement,
                    [&](const CellStresses<dim> &cell, const unsigned int q) {
-                     const auto &dofs          = cell.dofs();
-                     double      size_gradient = 0.;
+                     const auto &dofs           = cell.dofs();
+                     const auto  size_of_strain = [&](const unsigned int node) {
+                       return cell.values().shape_grad(node, q).norm() +
+                              cell.values().hoop_strain(node, q);
+                     };
+                     double size_gradient = 0.;
                      for (unsigned int i = 0; i < dofs.size(); ++i)
                        size_gradient +=
-                         sizes(dofs[i]) *
-                         cell.values().shape_grad(i / dim, q).norm();
+                         sizes(dofs[i]) * size_of_strain(i / dim);
                      const double size_stress = cell.values().JxW(q) *
                                                 cell.solid_tensor().norm() *
                                                 size_gradient;
                      for (unsigned int i = 0; i < dofs.size(); ++i)
                        rounding(dofs[i]) +=
-                         size_stress *
-                         cell.values().shape_grad(i / dim, q).norm();
+                         size_stress * size_of_strain(i / dim);
                    });
     add_over_ranks(rounding, elastic_unknowns.communicator());
     const DofVector forces = applied_nodal_forces(factors);
@@ -240,7 +242,9 @@ namespace Debond
     : fields(fields)
     , cartesian_displacement(cartesian_displacement)
     , load_factor(factors.loads)
-    , shape(fields.unknowns().dof_handler().get_fe().base_element(0), rule)
+    , shape(fields.unknowns().dof_handler().get_fe().base_element(0),
+            rule,
+            fields.unknowns().symmetry())
     , cell_dofs(dim * shape.n_nodes())
     , cell_values(cell_dofs.size())
   {}
@@ -291,7 +295,11 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   CellStresses<dim>::strain(const unsigned int q) const
   {
-    return resized<3>(dealii::symmetrize(gradient(q)));
+    dealii::SymmetricTensor<2, 3> result =
+      resized<3>(dealii::symmetrize(gradient(q)));
+    for (unsigned int i = 0; i < cell_values.size(); i += dim)
+      result[2][2] += cell_values[i] * shape.hoop_strain(i / dim, q);
+    return result;
   }
 
 

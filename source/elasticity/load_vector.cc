@@ -104,10 +104,11 @@ namespace Debond
 
 
 
-    /// The mean of a traction on a face.
+    /// The mean of a traction on a face, times the way around the axis.
     template <int dim>
     dealii::Tensor<1, dim>
     mean_traction(const Traction<dim>                       &traction,
+                  const Symmetry                             symmetry,
                   const dealii::Tensor<1, dim>              &normal,
                   const std::array<dealii::Point<dim>, dim> &corners,
                   const dealii::Quadrature<dim - 1>         &rule)
@@ -118,7 +119,8 @@ namespace Debond
           dealii::Point<dim> point = corners[0];
           for (unsigned int k = 1; k < dim; ++k)
             point += rule.point(q)[k - 1] * (corners[k] - corners[0]);
-          sum += (dim - 1.) * rule.weight(q) * traction(point, normal);
+          sum += (dim - 1.) * rule.weight(q) * circumference(symmetry, point) *
+                 traction(point, normal);
         }
       return sum;
     }
@@ -128,12 +130,15 @@ namespace Debond
     /// Appends a note if the integral over the worst face is not good enough.
     template <int dim>
     void
-    add_note(const WorstFace<dim> &worst, std::vector<std::string> &notes)
+    add_note(const WorstFace<dim>     &worst,
+             const Symmetry            symmetry,
+             std::vector<std::string> &notes)
     {
       if (worst.difference <= Tolerance::load_integral * worst.size)
         return;
       const auto mean_by = [&](const unsigned int n_parts) {
         return mean_traction<dim>(*worst.traction,
+                                  symmetry,
                                   worst.normal,
                                   worst.corners,
                                   face_rule<dim>(n_parts));
@@ -201,6 +206,7 @@ namespace Debond
     void
     add_tractions(const dealii::DoFHandler<dim> &dof_handler,
                   const Loads<dim>              &loads,
+                  const Symmetry                 symmetry,
                   DofVector                     &forces,
                   std::vector<std::string>      *notes)
     {
@@ -242,11 +248,10 @@ namespace Debond
                 double                 mean_size = 0.;
                 for (unsigned int q = 0; q < rule.size(); ++q)
                   {
-                    values[q] =
-                      (dim - 1.) * rule.weight(q) *
-                      traction(on_face<dim>(fe_values.quadrature_point(q),
-                                            corners),
-                               normal);
+                    const auto &point = fe_values.quadrature_point(q);
+                    values[q]         = (dim - 1.) * rule.weight(q) *
+                                circumference(symmetry, point) *
+                                traction(on_face<dim>(point, corners), normal);
                     by_rule += values[q];
                     mean_size += values[q].norm();
                   }
@@ -259,7 +264,8 @@ namespace Debond
                 worst.size += measure * mean_size;
                 const double difference =
                   measure *
-                  (mean_traction<dim>(traction, normal, corners, coarse_rule) -
+                  (mean_traction<dim>(
+                     traction, symmetry, normal, corners, coarse_rule) -
                    by_rule)
                     .norm();
                 if (difference > worst.difference)
@@ -273,7 +279,7 @@ namespace Debond
           }
       if (notes != nullptr)
         for (const auto &[unused, worst] : worst_faces)
-          add_note(worst, *notes);
+          add_note(worst, symmetry, *notes);
     }
 
 
@@ -282,11 +288,13 @@ namespace Debond
     void
     add_body_force(const dealii::DoFHandler<dim> &dof_handler,
                    const Loads<dim>              &loads,
+                   const Symmetry                 symmetry,
                    DofVector                     &forces)
     {
       const auto                                  &fe = dof_handler.get_fe();
       SimplexValues<dim>                           values(fe.base_element(0),
-                                dealii::QGaussSimplex<dim>(fe.degree + 1));
+                                dealii::QGaussSimplex<dim>(fe.degree + 1),
+                                symmetry);
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       for (const auto &cell : owned_cells(dof_handler))
         {
@@ -310,13 +318,14 @@ namespace Debond
   DofVector
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads,
+              const Symmetry                 symmetry,
               std::vector<std::string>      *notes)
   {
     DofVector forces(dof_handler.n_dofs());
     if (loads.body_force)
-      add_body_force(dof_handler, loads, forces);
+      add_body_force(dof_handler, loads, symmetry, forces);
     if (!loads.tractions.empty())
-      add_tractions(dof_handler, loads, forces, notes);
+      add_tractions(dof_handler, loads, symmetry, forces, notes);
     return forces;
   }
 

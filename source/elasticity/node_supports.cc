@@ -257,6 +257,36 @@ namespace Debond
 
   template <int dim>
   void
+  NodeSupports<dim>::hold_axis(const std::vector<dealii::Point<dim>> &positions,
+                               const double                           diameter)
+  {
+    const double on_it = Tolerance::same_place * diameter;
+    for (unsigned int index = 0; index < positions.size(); ++index)
+      {
+        const dealii::Point<dim> &position = positions[index];
+        if (position[0] < -on_it)
+          throw EntryError("Symmetry",
+                           "the body reaches to " + point_text(position) +
+                             ", but x is the distance from the axis");
+        if (position[0] > on_it)
+          continue;
+        axis_nodes.insert(index);
+        PrescribedNode<dim> &node =
+          nodes.emplace(index, at(index, position)).first->second;
+        if (!node.add({dealii::Point<dim>::unit_vector(0),
+                       0.,
+                       dealii::numbers::invalid_unsigned_int}))
+          throw SupportError(SupportError::Subject::displacement,
+                             name(node.rows[0].support),
+                             "it moves " + point_text(position) +
+                               " away from the axis");
+      }
+  }
+
+
+
+  template <int dim>
+  void
   NodeSupports<dim>::glue(NodePairs<dim> &pairs)
   {
     // Whether one node is held wherever the other one is.

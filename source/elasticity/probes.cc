@@ -75,6 +75,7 @@ namespace Debond
     void
     add_integrals(const Values                                       &fe_values,
                   const std::vector<dealii::types::global_dof_index> &dofs,
+                  const Symmetry                                      symmetry,
                   const IsWanted                                     &is_wanted,
                   Weights                                            &weights)
     {
@@ -82,7 +83,9 @@ namespace Debond
       for (unsigned int i = 0; i < dofs.size(); i += dim)
         if (is_wanted(i))
           for (const unsigned int q : fe_values.quadrature_point_indices())
-            weights[dofs[i]] += fe_values.JxW(q) * fe_values.shape_value(i, q);
+            weights[dofs[i]] +=
+              fe_values.JxW(q) * fe_values.shape_value(i, q) *
+              circumference(symmetry, fe_values.quadrature_point(q));
     }
 
 
@@ -95,7 +98,8 @@ namespace Debond
               const std::string          &piece)
     {
       const auto &fe    = unknowns.dof_handler().get_fe();
-      const auto  flags = dealii::update_values | dealii::update_JxW_values;
+      const auto  flags = dealii::update_values | dealii::update_JxW_values |
+                         dealii::update_quadrature_points;
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       Weights                                      weights;
       if (const auto boundary = pieces.boundaries.find(piece);
@@ -115,6 +119,7 @@ namespace Debond
                   add_integrals(
                     fe_values,
                     dofs,
+                    unknowns.symmetry(),
                     [&](const unsigned int i) {
                       return fe.has_support_on_face(i, f);
                     },
@@ -135,6 +140,7 @@ namespace Debond
             add_integrals(
               fe_values,
               dofs,
+              unknowns.symmetry(),
               [](const unsigned int) { return true; },
               weights);
           }

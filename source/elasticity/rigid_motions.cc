@@ -88,6 +88,7 @@ namespace Debond
   template <int dim>
   FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
+                     const Symmetry                   symmetry,
                      const double                     diameter,
                      const std::vector<std::string>  &bodies)
   {
@@ -112,6 +113,10 @@ namespace Debond
         const Eigen::VectorXd row = motions.resisted(support, n);
         gram += row * row.transpose();
       }
+    if (symmetry == Symmetry::axis)
+      for (unsigned int k = 0; k < n; ++k)
+        if (k % n_of_body<dim> != 1)
+          gram(k, k) += 1. + static_cast<double>(supports.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     const double                                         threshold =
       Tolerance::free_motion * static_cast<double>(supports.size());

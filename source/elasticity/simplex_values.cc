@@ -7,8 +7,10 @@ namespace Debond
 {
   template <int dim>
   SimplexValues<dim>::SimplexValues(const dealii::FiniteElement<dim> &element,
-                                    const dealii::Quadrature<dim>    &rule)
+                                    const dealii::Quadrature<dim>    &rule,
+                                    const Symmetry                    symmetry)
     : rule(rule)
+    , symmetry(symmetry)
     , nodes(element.dofs_per_cell)
     , gradients(rule.size() * nodes)
   {

@@ -42,7 +42,8 @@ namespace Debond
 
     SimplexValues<dim>         values(dealii::FE_SimplexP<dim>(1),
                               degree == 1 ? dealii::QGaussSimplex<dim>(2) :
-                                                    strain_rule<dim>(degree));
+                                                    strain_rule<dim>(degree),
+                              Symmetry::none);
     const std::vector<double> &weights = values.get_quadrature().get_weights();
     const double volume = std::accumulate(weights.begin(), weights.end(), 0.);
     for (const auto &cell : triangulation.active_cell_iterators())
@@ -70,14 +71,17 @@ namespace Debond
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
                      const ByRegion<Material>      &materials,
                      const std::vector<double>     &temperature_changes,
+                     const Symmetry                 symmetry,
                      DofVector                     &forces)
   {
     if (temperature_changes.empty())
       return;
     const auto stresses = materials.transformed(
       [](const Material &material) { return material.thermal_stress<dim>(); });
-    const auto        &fe = dof_handler.get_fe();
-    SimplexValues<dim> values(fe.base_element(0), strain_rule<dim>(fe.degree));
+    const auto                                  &fe = dof_handler.get_fe();
+    SimplexValues<dim>                           values(fe.base_element(0),
+                              strain_rule<dim>(fe.degree),
+                              symmetry);
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
     const unsigned int n_points = values.get_quadrature().size();
     for (const auto &cell : owned_cells(dof_handler))

@@ -94,6 +94,9 @@ namespace Debond
                               condition,
                               conditions,
                               change_of_basis);
+    if (conditions.symmetry == Symmetry::axis)
+      node_supports.hold_axis(node_positions(), diameter_of(triangulation));
+    axis_nodes = node_supports.on_axis();
     node_supports.glue(node_pairs);
     names_of_supports = node_supports.names();
     // Contact nodes of an interface are the first nodes of pairs, whose
@@ -130,7 +133,7 @@ namespace Debond
         support.other = body_of(row->others[0].first);
     };
     std::for_each(held.begin(), held.end(), in_body);
-    free_motions = free_rigid_motions(held, diameter, places);
+    free_motions = free_rigid_motions(held, symmetry(), diameter, places);
     if (free_motions.motions.empty())
       return;
     const auto hold = [&](const dealii::Point<dim>     &position,
@@ -154,7 +157,7 @@ namespace Debond
     hold_along(boundary.nodes);
     hold_along(boundary.held_vertices);
     const std::vector<std::string> motions =
-      free_rigid_motions(held, diameter, places).names;
+      free_rigid_motions(held, symmetry(), diameter, places).names;
     if (!motions.empty())
       throw std::invalid_argument(
         "Boundary conditions leave a rigid motion free: " +

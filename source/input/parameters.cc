@@ -140,6 +140,11 @@ namespace Debond
   {
     bind_constants(constants, *this);
     bind("Dimension", p.dimension, whole_number(2, 3), "Space dimension");
+    bind_choice(
+      "Symmetry",
+      p.symmetry,
+      {{"none", Symmetry::none}, {"axis", Symmetry::axis}},
+      "With axis the plane mesh is half of a section of a body of revolution: x is the distance from its axis, on which nodes are held along x, and y is along the axis. Forces, energies and areas are those of the whole circle");
     bind_mesh(body, *this);
     bind(
       "Mesh/Degree",
@@ -305,6 +310,44 @@ namespace Debond
 
 
 
+    /// Entries that cannot be together with what @p others say, and why.
+    using Refusals = std::vector<std::tuple<bool, std::string, std::string>>;
+
+    void
+    refuse(const Refusals                 &refusals,
+           const std::vector<std::string> &others,
+           ParameterTable                 &table)
+    {
+      for (const auto &[is_set, entry, reason] : refusals)
+        if (is_set)
+          table.reject(entry, reason, others);
+    }
+
+
+
+    /// Refuses what a body of revolution cannot have.
+    void
+    check_symmetry(Parameters &p, ParameterTable &table)
+    {
+      if (p.symmetry == Symmetry::none)
+        return;
+      refuse(
+        {{p.dimension != 2, "Dimension", "Symmetry = axis needs 2"},
+         {table.is_set("Material/Hypothesis") &&
+            p.materials.everywhere.hypothesis ==
+              Material::Hypothesis::plane_stress,
+          "Material/Hypothesis",
+          "a body of revolution has strains around its axis: leave it out"},
+         {p.certificate.kind != CertificateKind::none,
+          "Certificate/Kind",
+          "is for bodies without an axis"}},
+        {"Symmetry"},
+        table);
+      p.materials.everywhere.hypothesis = Material::Hypothesis::plane_strain;
+    }
+
+
+
     void
     check_certificate(const Parameters &p, ParameterTable &table)
     {
@@ -410,21 +453,6 @@ namespace Debond
               "Solver/Majorise minimise/"}})
         if (is_idle)
           table.without_effect(entries, reason);
-    }
-
-
-
-    /// Entries that cannot be together with what @p others say, and why.
-    using Refusals = std::vector<std::tuple<bool, std::string, std::string>>;
-
-    void
-    refuse(const Refusals                 &refusals,
-           const std::vector<std::string> &others,
-           ParameterTable                 &table)
-    {
-      for (const auto &[is_set, entry, reason] : refusals)
-        if (is_set)
-          table.reject(entry, reason, others);
     }
 
 
@@ -600,6 +628,7 @@ namespace Debond
   {
     const Stage stage("mesh");
     p.scene = scene;
+    check_symmetry(p, *this);
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
     body.meshing.memory = memory_left(p.solver.memory_limit);

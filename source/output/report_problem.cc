@@ -93,6 +93,8 @@ namespace Debond
       record.line("material",
                   numbers(material),
                   problem.dimension == 3 ? "" :
+                  problem.symmetry == Symmetry::axis ?
+                                           ", around the axis x = 0" :
                   material.hypothesis == Material::Hypothesis::plane_stress ?
                                            ", plane stress" :
                                            ", plane strain");

@@ -80,11 +80,12 @@ namespace Debond
                 const ErrorEstimate          *estimate,
                 const std::vector<CellField> &more)
     {
-      using Stress            = dealii::SymmetricTensor<2, dim>;
-      const auto &dofs        = problem.unknowns().dof_handler();
-      const auto &first       = *dofs.begin_active();
-      const auto &fields      = problem.fields();
-      bool        has_regions = false, has_axes = false;
+      using Stress               = dealii::SymmetricTensor<2, dim>;
+      const auto    &dofs        = problem.unknowns().dof_handler();
+      const auto    &first       = *dofs.begin_active();
+      const auto    &fields      = problem.fields();
+      const Symmetry symmetry    = problem.unknowns().symmetry();
+      bool           has_regions = false, has_axes = false;
       for (const auto &cell : dofs.active_cell_iterators())
         {
           has_regions |= cell->material_id() != first.material_id();
@@ -131,7 +132,8 @@ namespace Debond
             add(components[c].c_str(),
                 stress[Stress::unrolled_to_component_indices(c)]);
           if (has_zz)
-            add("stress_zz", stress[2][2]);
+            add(symmetry == Symmetry::axis ? "stress_tt" : "stress_zz",
+                stress[2][2]);
           if (has_axes)
             {
               const auto own = fields.material(cell).along_axes(stress);
@@ -145,7 +147,9 @@ namespace Debond
           add("strain_energy_density",
               fields.material(cell).energy_density(stress));
           if (estimate != nullptr)
-            add("error_density", estimate->cells[index] / cell->measure());
+            add("error_density",
+                estimate->cells[index] / cell->measure() /
+                  circumference(symmetry, cell->center()));
           for (const auto &[name, numbers] : more)
             add(name.c_str(), numbers[index]);
         }

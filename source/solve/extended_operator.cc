@@ -4,6 +4,7 @@
 #include <debond/solve/extended_operator.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace Debond
 {
@@ -33,7 +34,9 @@ namespace Debond
         const Material &material = problem.fields().material(dof_cell);
         cell.lambda              = material.lame_lambda<dim>();
         cell.mu                  = material.shear_modulus();
-        if (material.orthotropy)
+        for (unsigned int v = 0; v <= dim && has_axis(); ++v)
+          cell.radii[v] = dof_cell->vertex(v)[0];
+        if (material.orthotropy || has_axis())
           cell.stiffness = &problem.fields().solid_tensor(dof_cell);
         cells.push_back(cell);
       }
@@ -57,6 +60,8 @@ namespace Debond
         reference_gradients.emplace_back();
         for (unsigned int v = 1; v <= dim; ++v)
           reference_gradients[0].push_back(derivative(v));
+        barycentric.emplace_back(dim + 1, 1.L / (dim + 1));
+        reference_values = barycentric;
         return;
       }
     // The points and gradients of strain_rule() and FE_SimplexP, which have the
@@ -68,11 +73,19 @@ namespace Debond
           return v == q ? 1.L - dim * small : small;
         };
         auto &gradients = reference_gradients.emplace_back();
+        auto &values    = reference_values.emplace_back();
+        barycentric.emplace_back();
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            barycentric.back().push_back(coordinate(v));
+            values.push_back(coordinate(v) * (2.L * coordinate(v) - 1.L));
+          }
         for (unsigned int v = 1; v <= dim; ++v)
           gradients.push_back((4.L * coordinate(v) - 1.L) * derivative(v));
         for (unsigned int l = 0; l < n_simplex_edges(dim + 1); ++l)
           {
             const auto &[a, b] = simplex_edges[l];
+            values.push_back(4.L * coordinate(a) * coordinate(b));
             gradients.push_back(4.L * (coordinate(a) * derivative(b) +
                                        coordinate(b) * derivative(a)));
           }
@@ -94,11 +107,21 @@ namespace Debond
       for (unsigned int q = 0; q < reference_gradients.size(); ++q)
         {
           const std::vector<Gradient> gradients = gradients_at(cell, q);
-          const Stress weighted = cell.volume / reference_gradients.size() *
-                                  stress(cell, gradients, displacement);
+          Stress weighted = cell.volume / reference_gradients.size() *
+                            stress(cell, q, gradients, displacement);
+          if (has_axis())
+            {
+              weighted *= 2.L * dealii::numbers::PI * radius(cell, q);
+              for (unsigned int n = 0; n <= gradients.size(); ++n)
+                forces(cell.dofs[n * dim]) +=
+                  weighted[2][2] * reference_values[q][n] / radius(cell, q);
+            }
           for (unsigned int n = 0; n < gradients.size(); ++n)
             {
-              const Gradient force = weighted * gradients[n];
+              Gradient force;
+              for (unsigned int d = 0; d < dim; ++d)
+                for (unsigned int e = 0; e < dim; ++e)
+                  force[d] += weighted[d][e] * gradients[n][e];
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   // The first node has minus the sum of the others' forces, so
@@ -137,35 +160,59 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Tensor<2, dim, long double>
+  long double
+  ExtendedOperator<dim>::radius(const Cell        &cell,
+                                const unsigned int point) const
+  {
+    return std::inner_product(cell.radii.begin(),
+                              cell.radii.end(),
+                              barycentric[point].begin(),
+                              0.L);
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<2, 3, long double>
   ExtendedOperator<dim>::stress(const Cell                  &cell,
+                                const unsigned int           point,
                                 const std::vector<Gradient> &gradients,
                                 const ExtendedVector        &cartesian_u) const
   {
-    dealii::Tensor<2, dim, long double> gradient;
+    Stress gradient;
     for (unsigned int n = 0; n < gradients.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
-        gradient[d] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
-                        cartesian_u(cell.dofs[d])) *
-                       gradients[n];
+        for (unsigned int e = 0; e < dim; ++e)
+          gradient[d][e] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
+                             cartesian_u(cell.dofs[d])) *
+                            gradients[n][e];
+    if (has_axis())
+      for (unsigned int n = 0; n <= gradients.size(); ++n)
+        gradient[2][2] += cartesian_u(cell.dofs[n * dim]) *
+                          reference_values[point][n] / radius(cell, point);
     // Stresses come from differences of displacements with the first node, in
     // which what neighbours have in common is gone before it is multiplied by a
     // modulus.
     if (cell.stiffness != nullptr)
       {
         Stress sigma;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            for (unsigned int k = 0; k < dim; ++k)
-              for (unsigned int l = 0; l < dim; ++l)
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            for (unsigned int k = 0; k < 3; ++k)
+              for (unsigned int l = 0; l < 3; ++l)
                 sigma[i][j] +=
                   static_cast<long double>((*cell.stiffness)[i][j][k][l]) *
                   gradient[k][l];
         return sigma;
       }
-    Stress sigma = cell.mu * (gradient + dealii::transpose(gradient));
+    Stress            sigma;
+    const long double trace = dealii::trace(gradient);
     for (unsigned int d = 0; d < dim; ++d)
-      sigma[d][d] += cell.lambda * dealii::trace(gradient);
+      {
+        for (unsigned int e = 0; e < dim; ++e)
+          sigma[d][e] = cell.mu * (gradient[d][e] + gradient[e][d]);
+        sigma[d][d] += cell.lambda * trace;
+      }
     return sigma;
   }
 

@@ -73,9 +73,7 @@ namespace Debond
                                adhesion.points().bonds_at(face.node(k)).shear));
               }
           if (are_gone)
-            at_edge[face.cell] =
-              stiffness *
-              (dim == 2 ? face.measure : 2. * std::sqrt(face.measure));
+            at_edge[face.cell] = stiffness * face.size();
         }
       double largest = 0.;
       for (const auto &cell : owned_cells(unknowns.dof_handler()))

@@ -142,11 +142,17 @@ namespace Debond
                         displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
     const std::set<std::string> &dead_loads = given.load_path.dead_loads;
-    body_loads                              = make_loads<dim>(
-      given.loads, dead_loads, false, boundaries, *triangulation);
-    body_dead_loads = make_loads<dim>(
-      given.loads, dead_loads, true, boundaries, *triangulation);
-    body_materials = make_materials(given.materials, names.regions);
+    const auto                   loads_of   = [&](const bool dead) {
+      return make_loads<dim>(given.loads,
+                             dead_loads,
+                             dead,
+                             given.symmetry,
+                             boundaries,
+                             *triangulation);
+    };
+    body_loads      = loads_of(false);
+    body_dead_loads = loads_of(true);
+    body_materials  = make_materials(given.materials, names.regions);
     // Extreme ratios of moduli are refused instead of solved wrongly. The
     // extremes of the whole body are those of all ranks.
     std::set<double> moduli;

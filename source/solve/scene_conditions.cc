@@ -98,7 +98,8 @@ namespace Debond
       insert(boundaries.at(name), conditions.clamped);
     for (const std::string &name : given.contact_boundaries)
       insert(boundaries.at(name), conditions.contact);
-    conditions.names = boundaries;
+    conditions.names    = boundaries;
+    conditions.symmetry = given.symmetry;
     for (const std::string &name : names.interfaces)
       {
         // Without a contact condition on both sides of a cut the two bodies

@@ -13,6 +13,7 @@ namespace Debond
   make_loads(const LoadParameters             &parameters,
              const std::set<std::string>      &dead_loads,
              const bool                        wants_dead,
+             const Symmetry                    symmetry,
              const BoundaryNames              &boundaries,
              const dealii::Triangulation<dim> &mesh)
   {
@@ -50,7 +51,8 @@ namespace Debond
             for (const auto &cell : owned_cells(mesh))
               for (const auto &face : cell->face_iterators())
                 if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
-                  measure += face->measure();
+                  measure +=
+                    face->measure() * circumference(symmetry, face->center());
             measure =
               dealii::Utilities::MPI::sum(measure, mesh.get_communicator());
             std::vector<double> density(dim);

@@ -7,6 +7,7 @@
 #include <deal.II/base/types.h>
 
 #include <debond/mesh/bernstein.h>
+#include <debond/mesh/symmetry.h>
 #include <debond/optimization/interval.h>
 
 #include <Eigen/Core>
@@ -46,8 +47,8 @@ namespace Debond
       /// Outward unit normal of the body.
       dealii::Tensor<1, dim> normal;
 
-      /// Integral of the nodal basis function over Gamma_C (area in 3D,
-      /// length in 2D).
+      /// Integral of the nodal basis function over Gamma_C: an area in 3D and
+      /// of a body of revolution, else a length.
       double measure;
 
       /// The distance to the foundation of the body at rest.
@@ -101,8 +102,16 @@ namespace Debond
       /// Outward unit normal of the body.
       dealii::Tensor<1, dim> normal;
 
-      /// Length or area.
+      /// Length, or area.
       double measure;
+
+      /// Its length; of a triangle twice the edge of a square of its area.
+      double
+      size() const
+      {
+        return dim == 2 ? vertices[0].distance(vertices[1]) :
+                          2. * std::sqrt(measure);
+      }
 
       /// The piece of the body's boundary that it belongs to.
       dealii::types::boundary_id id = 0;
@@ -130,6 +139,40 @@ namespace Debond
         return k < dim ? held[k] : edge_held[k - dim];
       }
     };
+
+    Symmetry symmetry = Symmetry::none;
+
+    /// The ratio of the measure around a point of a face, by its barycentric
+    /// coordinates, to the mean of the face: that of the radii of a body of
+    /// revolution.
+    double
+    density(const Face &face, const std::array<double, dim> &place) const
+    {
+      if (symmetry == Symmetry::none)
+        return 1.;
+      double radius = 0., mean = 0.;
+      for (unsigned int k = 0; k < dim; ++k)
+        {
+          radius += place[k] * face.vertices[k][0];
+          mean += face.vertices[k][0] / dim;
+        }
+      return radius / mean;
+    }
+
+    /// The integral over a face of the basis function of its k-th coefficient.
+    /// The functions of a face have the same integral; with a linear density
+    /// it is that times the density at the function's centroid.
+    double
+    integral(const Face &face, const unsigned int k) const
+    {
+      std::array<double, dim> centroid;
+      for (unsigned int v = 0; v < dim; ++v)
+        centroid[v] = (k >= dim ? 2. :
+                       v == k   ? 1. + degree :
+                                  1.) /
+                      (degree + dim);
+      return face.measure / n_face_nodes() * density(face, centroid);
+    }
 
     /// The degree of the displacement, 1 or 2.
     unsigned int degree = 1;

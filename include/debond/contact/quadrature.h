@@ -45,6 +45,10 @@ namespace Debond
     {
       std::array<double, dim> barycentric;
       double                  weight; ///< the weights of a face sum to 1
+
+      /// Where a linear density of the measure is taken: of a vertex at the
+      /// centroid of its basis function, else at the point.
+      std::array<double, dim> centroid = barycentric;
     };
 
     /// The trace on a face: its coefficients, see bernstein().

@@ -7,6 +7,7 @@
 
 #include <debond/base/entry_error.h>
 #include <debond/mesh/body.h>
+#include <debond/mesh/symmetry.h>
 
 #include <algorithm>
 #include <array>
@@ -40,6 +41,8 @@ namespace Debond
 
     /// The names that messages and reactions use.
     BoundaryNames names = {};
+
+    Symmetry symmetry = Symmetry::none;
 
     /// The contact boundaries that are sides of interfaces between bodies.
     std::set<dealii::types::boundary_id> low_sides  = {};

@@ -34,7 +34,6 @@ namespace Debond
     std::vector<dealii::Tensor<1, dim>> normals;
 
     /// Integral of the vertex' basis function over the faces of each group.
-    std::vector<double> measures;
   };
 
 

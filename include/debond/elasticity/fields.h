@@ -214,7 +214,8 @@ namespace Debond
     dealii::Tensor<2, dim>
     gradient(const unsigned int q) const;
 
-    /// The strain of the solid, whose components across a plane body are zero.
+    /// The strain of the solid, whose components across a plane body are zero;
+    /// u_r / r is the one across the mesh of a body of revolution.
     dealii::SymmetricTensor<2, 3>
     strain(const unsigned int q) const;
 

@@ -10,6 +10,7 @@
 
 #include <debond/base/dof_vector.h>
 #include <debond/base/entry_error.h>
+#include <debond/mesh/symmetry.h>
 
 #include <map>
 #include <memory>
@@ -92,6 +93,7 @@ namespace Debond
   DofVector
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads,
+              const Symmetry                 symmetry,
               std::vector<std::string>      *notes = nullptr);
 } // namespace Debond
 

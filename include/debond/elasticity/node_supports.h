@@ -71,6 +71,20 @@ namespace Debond
               const BoundaryConditions             &conditions,
               const ChangeOfBasis<dim>             &basis);
 
+    /// Holds the nodes on the axis of a body of revolution of this @p diameter
+    /// along x. Throws EntryError if a node is beyond the axis, SupportError if
+    /// another displacement is prescribed on it.
+    void
+    hold_axis(const std::vector<dealii::Point<dim>> &positions,
+              const double                           diameter);
+
+    /// The nodes that hold_axis() has found on the axis.
+    const std::set<unsigned int> &
+    on_axis() const
+    {
+      return axis_nodes;
+    }
+
     /// Makes displacements that are prescribed at the first nodes of @p pairs
     /// those of jumps, after exchanging both where only the first one is
     /// supported. Throws std::invalid_argument if both nodes of a pair are
@@ -110,6 +124,13 @@ namespace Debond
       return ends_of_interfaces.count(node) > 0;
     }
 
+    /// The name of a support of a row, which may be none of names().
+    std::string
+    name(const unsigned int support) const
+    {
+      return support < support_names.size() ? support_names[support] : "axis";
+    }
+
     /// The pieces of the boundary that support the body.
     const std::vector<std::string> &
     names() const
@@ -122,6 +143,7 @@ namespace Debond
 
     std::map<unsigned int, PrescribedNode<dim>>         nodes;
     std::vector<std::string>                            support_names;
+    std::set<unsigned int>                              axis_nodes;
     std::set<unsigned int>                              ends_of_interfaces;
     std::map<unsigned int, std::array<unsigned int, 2>> glued;
   };

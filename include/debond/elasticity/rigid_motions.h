@@ -5,6 +5,8 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <debond/mesh/symmetry.h>
+
 #include <string>
 #include <vector>
 
@@ -62,10 +64,12 @@ namespace Debond
   /// The rigid motions that the supports leave free; none if the body is held.
   /// Lengths are measured in units of @p diameter, the body's size; motions
   /// that the supports resist by less than 1e-6 of full clamping count as free.
-  /// @p bodies: where they are, for names; nothing of a single one.
+  /// A body of revolution has no motion but that along its axis. @p bodies:
+  /// where they are, for names; nothing of a single one.
   template <int dim>
   FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
+                     const Symmetry                   symmetry,
                      const double                     diameter,
                      const std::vector<std::string>  &bodies = {""});
 } // namespace Debond

@@ -8,6 +8,8 @@
 #include <deal.II/fe/fe.h>
 #include <deal.II/grid/tria_accessor.h>
 
+#include <debond/mesh/symmetry.h>
+
 #include <array>
 #include <vector>
 
@@ -15,13 +17,15 @@ namespace Debond
 {
   /// This is dealii::FEValues for a scalar element on simplices with straight
   /// sides: all follows from the gradients of the barycentric coordinates,
-  /// which takes much less time than a mapping that may be curved.
+  /// which takes much less time than a mapping that may be curved. Of a body of
+  /// revolution it knows the way around the axis.
   template <int dim>
   class SimplexValues
   {
   public:
     SimplexValues(const dealii::FiniteElement<dim> &element,
-                  const dealii::Quadrature<dim>    &rule);
+                  const dealii::Quadrature<dim>    &rule,
+                  const Symmetry                    symmetry);
 
     void
     reinit(const dealii::TriaAccessor<dim, dim, dim> &cell);
@@ -70,6 +74,8 @@ namespace Debond
       for (unsigned int c = 0; c < dim; ++c)
         for (unsigned int d = 0; d < dim; ++d)
           result[c] += stress[c][d] * gradient[d];
+      if (has_axis())
+        result[0] += stress[2][2] * hoop_strain(node, q);
       return result;
     }
 
@@ -83,13 +89,30 @@ namespace Debond
       dealii::SymmetricTensor<2, 3> result;
       for (unsigned int d = 0; d < dim; ++d)
         result[component][d] = (d == component ? 1. : 0.5) * gradient[d];
+      if (component == 0 && has_axis())
+        result[2][2] = hoop_strain(node, q);
       return result;
+    }
+
+    bool
+    has_axis() const
+    {
+      return symmetry == Symmetry::axis;
+    }
+
+    /// The strain u_r / r around the axis that the radial component of a node
+    /// makes; zero without an axis.
+    double
+    hoop_strain(const unsigned int node, const unsigned int q) const
+    {
+      return has_axis() ? shape_value(node, q) / quadrature_point(q)[0] : 0.;
     }
 
     double
     JxW(const unsigned int q) const
     {
-      return jacobian * rule.weight(q);
+      return jacobian * rule.weight(q) *
+             (has_axis() ? circumference(symmetry, quadrature_point(q)) : 1.);
     }
 
     dealii::Point<dim>
@@ -98,7 +121,7 @@ namespace Debond
       return origin + rule.point(q) * edges;
     }
 
-    /// The area or volume of the cell.
+    /// The area of the cell, also of a body of revolution, or its volume.
     double
     measure() const
     {
@@ -115,6 +138,7 @@ namespace Debond
 
   private:
     const dealii::Quadrature<dim>       rule;
+    const Symmetry                      symmetry;
     const unsigned int                  nodes;
     std::vector<double>                 shape_values;
     std::vector<dealii::Tensor<1, dim>> reference_gradients;

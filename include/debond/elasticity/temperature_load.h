@@ -33,6 +33,7 @@ namespace Debond
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
                      const ByRegion<Material>      &materials,
                      const std::vector<double>     &temperature_changes,
+                     const Symmetry                 symmetry,
                      DofVector                     &forces);
 } // namespace Debond
 

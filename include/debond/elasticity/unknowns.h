@@ -60,7 +60,8 @@ namespace Debond
     /// left free that moves no contact node along its normal; the message names
     /// the motion ("translation in y", "rotation about z"). Throws SupportError
     /// if supports contradict each other or the foundation, are not finite
-    /// somewhere, or if a roller is not flat.
+    /// somewhere, or if a roller is not flat, and EntryError if a body of
+    /// revolution reaches beyond its axis. Nodes on the axis are held along x.
     ///
     /// All ranks that share the mesh have to call it. All know all of what
     /// supports and contact make of the unknowns.
@@ -95,6 +96,19 @@ namespace Debond
     degree() const
     {
       return fe.degree;
+    }
+
+    Symmetry
+    symmetry() const
+    {
+      return contact_space.boundary().symmetry;
+    }
+
+    /// The nodes on the axis of a body of revolution.
+    const std::set<unsigned int> &
+    on_axis() const
+    {
+      return axis_nodes;
     }
 
     const ContactSpace<dim> &
@@ -287,6 +301,7 @@ namespace Debond
     ChangeOfBasis<dim>        change_of_basis;
     NodePairs<dim>            node_pairs;
     std::vector<unsigned int> bodies; ///< by node, or empty
+    std::set<unsigned int>    axis_nodes;
     std::vector<std::string>  names_of_supports;
     ConstrainedDofs<dim>      constrained; ///< with G
     ContactSpace<dim>         contact_space;

@@ -49,6 +49,7 @@ namespace Debond
   {
     std::string                            scene; ///< path of the file
     unsigned int                           dimension = 2;
+    Symmetry                               symmetry  = Symmetry::none;
     std::shared_ptr<const BodyDescription> body;
     unsigned int                           degree = 1; ///< of displacements
     MaterialParameters                     materials;

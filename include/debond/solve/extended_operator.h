@@ -36,7 +36,7 @@ namespace Debond
 
   private:
     using Gradient = dealii::Tensor<1, dim, long double>;
-    using Stress   = dealii::Tensor<2, dim, long double>;
+    using Stress   = dealii::Tensor<2, 3, long double>; ///< of the solid
 
     struct Cell
     {
@@ -47,13 +47,22 @@ namespace Debond
       /// first.
       dealii::Tensor<2, dim, long double> gradients;
 
+      /// Without a symmetry axis the radii of the vertices are not used.
+      std::array<long double, dim + 1> radii = {};
+
       long double volume;
       long double lambda; ///< Lame's
       long double mu;
 
-      /// In place of them if the material is orthotropic.
+      /// In place of them if the material is orthotropic, or around an axis.
       const dealii::SymmetricTensor<4, 3> *stiffness = nullptr;
     };
+
+    bool
+    has_axis() const
+    {
+      return problem.unknowns().symmetry() == Symmetry::axis;
+    }
 
     void
     make_reference_gradients();
@@ -63,8 +72,12 @@ namespace Debond
     std::vector<Gradient>
     gradients_at(const Cell &cell, const unsigned int point) const;
 
+    long double
+    radius(const Cell &cell, const unsigned int point) const;
+
     Stress
     stress(const Cell                  &cell,
+           const unsigned int           point,
            const std::vector<Gradient> &gradients,
            const ExtendedVector        &cartesian_u) const;
 
@@ -74,6 +87,9 @@ namespace Debond
     /// The gradients of the basis functions but the first at each point of
     /// strain_rule(), by all barycentric coordinates but the first.
     std::vector<std::vector<Gradient>> reference_gradients;
+
+    /// The values of all basis functions and barycentric coordinates there.
+    std::vector<std::vector<long double>> reference_values, barycentric;
   };
 } // namespace Debond
 

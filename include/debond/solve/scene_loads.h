@@ -21,6 +21,7 @@ namespace Debond
   make_loads(const LoadParameters             &parameters,
              const std::set<std::string>      &dead_loads,
              const bool                        wants_dead,
+             const Symmetry                    symmetry,
              const BoundaryNames              &boundaries,
              const dealii::Triangulation<dim> &mesh);
 } // namespace Debond
