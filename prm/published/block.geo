@@ -1,6 +1,6 @@
 // A block W x H with cells of the size h at y = 0 and |x - c| < f, which grow by s per
-// length from there.
-DefineConstant[ W = 30, H = 30, c = 1, f = 0.1, h = 0.01, s = 0.2 ];
+// length from there, to m at most.
+DefineConstant[ W = 30, H = 30, c = 1, f = 0.1, h = 0.01, s = 0.2, m = 1e9 ];
 Point(1) = {0, 0, 0};
 Point(2) = {c, 0, 0};
 Point(3) = {W, 0, 0};
@@ -19,7 +19,7 @@ Physical Curve("top") = {4};
 Physical Curve("left") = {5};
 Physical Surface("block") = {1};
 Field[1] = MathEval;
-Field[1].F = Sprintf("%.16g + %g * (y + Max(0, Abs(x - %.16g) - %.16g))", h, s, c, f);
+Field[1].F = Sprintf("Min(%g, %.16g + %g * (y + Max(0, Abs(x - %.16g) - %.16g)))", m, h, s, c, f);
 Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;

@@ -9,7 +9,7 @@ import pathlib
 
 import numpy
 
-from . import cases, peers, report, runs
+from . import cases, peers, plots, report, runs
 from .runs import SOURCE
 
 PAGE = "doc/notes/published.md"
@@ -99,18 +99,41 @@ def laminate(run):
     yield "tip on refined meshes, mm", 9.60656, summary["probes"]["tip"][1]
 
 
-@problem("Hertz, cylinder on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2(c)",
-         0.01)
+def parabola(results, radius):
+    """The pressure in the middle and where it vanishes: p^2 is a parabola in x, of the
+    nodes but those at the edge, which is near the radius."""
+    x, p = results.profile["x"], results.profile["normal_force_density"]
+    inside = x < 0.8 * radius
+    slope, top = numpy.polyfit(x[inside]**2, p[inside]**2, 1)
+    return math.sqrt(top), math.sqrt(-top / slope)
+
+
+@problem("Hertz, cylinder on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2", 0.01)
 def hertz_cylinder(run):
     R, results = 10., run("published/hertz-cylinder", {"Certificate/Kind": "global"})
-    force = 2. * abs(results.summary["contact_reaction"][1])
-    # p^2 is a parabola in x: of the nodes but those at the edge.
-    x, p = results.profile["x"], results.profile["normal_force_density"]
+    force = 2. * results.summary["contact_reaction"][1]
     half = math.sqrt(4. * force * R / (math.pi * E_STAR))
-    slope, top = numpy.polyfit(x[x < 0.8 * half]**2, p[x < 0.8 * half]**2, 1)
+    top, edge = parabola(results, half)
+    yield "largest pressure at Debond's force", math.sqrt(force * E_STAR / (math.pi * R)), top
+    yield "half width of contact", half, edge
+
+
+@problem("Hertz, sphere on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2", 0.01)
+def hertz_sphere(run):
+    R, results = 10., run("published/hertz-sphere")
+    force = results.summary["contact_reaction"][1]
+    radius = (0.75 * force * R / E_STAR)**(1. / 3.)
+    top, edge = parabola(results, radius)
     yield ("largest pressure at Debond's force",
-           math.sqrt(force * E_STAR / (math.pi * R)), math.sqrt(top))
-    yield "half width of contact", half, math.sqrt(-top / slope)
+           (6. * force * E_STAR**2 / (math.pi**3 * R**2))**(1. / 3.), top)
+    yield "radius of contact", radius, edge
+
+
+@problem("thick tube with a pressure inside", "Lamé", 1e-3)
+def thick_tube(run):
+    for n in 10, 20, 40:
+        yield f"displacement of the inner wall, {n} cells", 1.3 / 3. * 4.4, run(
+            "published/thick-tube", {"Constants/n": n}).summary["probes"]["inside"][0]
 
 
 def pull_off_on_springs(k, w, n=400):
@@ -143,6 +166,23 @@ def strip_contact(run):
            word)
 
 
+@problem("flat circular punch, pull-off", "Kendall, J. Phys. D 4 (1971)", 0.01)
+def round_punch(run):
+    yield ("sqrt(8 pi E* w a^3)", math.sqrt(8. * math.pi * E_STAR * 1e-4),
+           run("published/round-punch").load_path_arc["factor"][1], "arc, stable")
+
+
+@problem("blister under a circular plate", "clamped plate, linear fracture mechanics", 0.01)
+def plate_blister(run):
+    stiffness, a, G = 70000. * 0.02**3 / (1. - 0.3**2), 20., 0.001
+    path = run("published/plate-blister").load_path
+    p = path["factor"][0]
+    yield ("deflection of the middle, 3 (1 - nu^2) p a^4 / (16 E h^3), mm",
+           3. * p * a**4 / (16. * stiffness), path["probe_middle_y"][0])
+    yield ("pressure at which it grows, G = 3 (1 - nu^2) p^2 a^4 / (32 E h^3), MPa",
+           math.sqrt(32. * stiffness * G / (3. * a**4)), path["change_factor"][-1])
+
+
 @problem("plate with a crack, strength", "Tada, Paris, Irwin (1973)", 0.005)
 def cracked_plate(run):
     part = 0.25  # of the width
@@ -161,6 +201,15 @@ def jkr_cylinder(run):
         yield (f"pull at Debond's half width {a:.3f}, M = {M}",
                math.sqrt(2. * math.pi * E_STAR * w * a) - math.pi * E_STAR * a**2 / (4. * R),
                -2. * results.summary["contact_reaction"][1])
+
+
+@problem("JKR, sphere", "Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971)", 0.05)
+def jkr_sphere(run):
+    for M in 0.02, 0.014, 0.01, 0.007:
+        found = [run("published/jkr-sphere", {"Constants/M": M, "Constants/u": u})
+                 for u in (0.03, 0.035)]
+        yield (f"pull-off, 1.5 pi w R, M = {M}", 4. * E_STAR / 30., max(
+            -results.summary["contact_reaction"][1] for results in found))
 
 
 @problem("heavy strip, lifted at its end", "beam theory", 0.025)
@@ -238,6 +287,35 @@ def bundle(run):
         "Certificate/Target": 0.005}).summary["functional"]
 
 
+def draw(program, directory="output/published"):
+    """The double cantilever beam and the sphere of JKR beside their closed forms."""
+    os.environ["DEBOND"] = program
+    figure, (left, right) = plots.plt.subplots(1, 2, figsize=(9., 3.6))
+    path = runs.run(f"{SOURCE}/prm/cookbook/delamination.prm", None,
+                    os.path.abspath(f"{directory}/delamination")).load_path
+    opening = path["displacement_factor"]
+    left.plot(opening, 20. * path["reaction_upper_end_y"], ".-", label="Debond")
+    running = opening[opening > 1.5]
+    left.plot(running, [beam_force(d) for d in running], "k--", label="beam theory")
+    left.set(xlabel="opening of the ends, mm", ylabel="force, N",
+             title="Double cantilever beam")
+    for M, style in (0.02, "^"), (0.014, "s"), (0.01, "o"):
+        points = []
+        for u in numpy.linspace(-0.02, 0.05, 8):
+            summary = runs.run(f"{SOURCE}/prm/published/jkr-sphere.prm", {
+                "Constants/M": M, "Constants/u": u}, os.path.abspath(
+                    f"{directory}/jkr-sphere")).summary
+            points.append((math.sqrt(12.**2 - summary["broken_zone"] / math.pi),
+                           -summary["contact_reaction"][1]))
+        right.plot(*zip(*points), style, label=f"Debond, M = {M}")
+    a = numpy.linspace(0.5, 1.5, 100)
+    right.plot(a, E_STAR * (8. / 30. * a**1.5 - 4. / 30. * a**3), "k-", label="JKR")
+    right.set(xlabel="radius that the bonds hold", ylabel="pull", title="Sphere")
+    for axes in left, right:
+        axes.legend()
+    figure.savefig(f"{SOURCE}/doc/pictures/published.png", dpi=110)
+
+
 def others(program, directory="output/published"):
     """Rows of what optimisers of others end at on two of the discrete problems."""
     os.environ["DEBOND"] = program
@@ -291,6 +369,8 @@ def main():
          for chosen in PROBLEMS if options.doc or
          any(word in chosen.title for word in options.problems or [""])
          for row in chosen.rows(program)])}
+    if options.doc:
+        draw(program)
     if options.others or options.doc:
         tables["others"] = (["problem", "optimiser", "J", "above the least", "says", "s"], [
             [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
