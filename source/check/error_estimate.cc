@@ -571,8 +571,9 @@ namespace Debond
       {
         // Displacements of iterative methods may be off by so much.
         const double                 measure = side.area.norm();
-        const dealii::Tensor<1, dim> normal  = side.area / measure;
-        const Jump<dim>              traction =
+        const dealii::Tensor<1, dim> normal =
+          (side.area * face.normal > 0. ? 1. : -1.) * face.normal;
+        const Jump<dim> traction =
           ::Debond::traction(of.adhesion, face, coordinates, s);
         const ContactPoint<dim> point =
           of.adhesion.points().point_at(face, coordinates);

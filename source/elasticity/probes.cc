@@ -95,7 +95,8 @@ namespace Debond
     Weights
     integrals(const ElasticUnknowns<dim> &unknowns,
               const PieceNames           &pieces,
-              const std::string          &piece)
+              const std::string          &piece,
+              const Symmetry              symmetry)
     {
       const auto &fe    = unknowns.dof_handler().get_fe();
       const auto  flags = dealii::update_values | dealii::update_JxW_values |
@@ -119,7 +120,7 @@ namespace Debond
                   add_integrals(
                     fe_values,
                     dofs,
-                    unknowns.symmetry(),
+                    symmetry,
                     [&](const unsigned int i) {
                       return fe.has_support_on_face(i, f);
                     },
@@ -140,7 +141,7 @@ namespace Debond
             add_integrals(
               fe_values,
               dofs,
-              unknowns.symmetry(),
+              symmetry,
               [](const unsigned int) { return true; },
               weights);
           }
@@ -157,9 +158,17 @@ namespace Debond
   {
     for (const Probe<dim> &probe : probes)
       {
-        const Weights weights = probe.kind == Probe<dim>::Kind::point ?
-                                  weights_at(unknowns, probe) :
-                                  integrals(unknowns, pieces, probe.piece);
+        const auto over = [&](const Symmetry symmetry) {
+          return integrals(unknowns, pieces, probe.piece, symmetry);
+        };
+        Weights weights = probe.kind == Probe<dim>::Kind::point ?
+                            weights_at(unknowns, probe) :
+                            over(unknowns.symmetry());
+        // The axis has no area, but a mean along it.
+        if (std::all_of(weights.begin(), weights.end(), [](const auto &entry) {
+              return entry.second == 0.;
+            }))
+          weights = over(Symmetry::none);
         Sum sum = {probe.name, probe.kind == Probe<dim>::Kind::force, {}};
         for (const auto &[dof, weight] : weights)
           sum.weights.emplace_back(dof, sum.of_forces ? 1. : weight);

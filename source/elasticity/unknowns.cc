@@ -40,6 +40,43 @@ namespace Debond
         }
       return lower.distance(upper);
     }
+
+
+
+    /// Gives contact faces the normals of their foundations.
+    template <int dim>
+    void
+    set_normals(const Supports<dim>            &supports,
+                std::vector<BoundaryFace<dim>> &faces)
+    {
+      for (BoundaryFace<dim> &face : faces)
+        if (const auto field = supports.normals.find(face.id);
+            field != supports.normals.end())
+          {
+            dealii::Point<dim> middle;
+            for (unsigned int v = 0; v < dim; ++v)
+              middle += face.positions[v] / static_cast<double>(dim);
+            const std::string &name  = field->second.name;
+            std::string        entry = "Boundary conditions/Foundation normal";
+            if (!name.empty())
+              entry += ' ' + name;
+            try
+              {
+                dealii::Tensor<1, dim> normal =
+                  field_vector(*field->second.value, middle);
+                if (!(normal * face.normal >
+                      Tolerance::same_normal * normal.norm()))
+                  throw std::invalid_argument(
+                    "it does not point out of the body at " +
+                    point_text(middle));
+                face.normal = normal / normal.norm();
+              }
+            catch (const std::invalid_argument &error)
+              {
+                throw EntryError(entry, error.what());
+              }
+          }
+    }
   } // namespace
 
 
@@ -110,6 +147,7 @@ namespace Debond
             entry != first_of.end())
           face.indices[n] = entry->second;
 
+    set_normals(supports, contact);
     constrained   = ConstrainedDofs<dim>(dofs.n_dofs(), supports);
     contact_space = make_contact_space(
       contact, degree, conditions, supports, node_supports, constrained);

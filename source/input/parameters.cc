@@ -367,6 +367,10 @@ namespace Debond
       if (!table.get("Mesh/Cuts").empty())
         table.reject("Certificate/Kind",
                      "needs one body, Mesh/Cuts makes several");
+      if (!p.supports.normal.empty() || !p.supports.normals.empty())
+        table.reject("Certificate/Kind",
+                     "needs the body's own normals",
+                     {"Boundary conditions/Foundation normal"});
       if (!p.loads.temperature_change.empty() && p.materials.has_axes())
         table.reject("Certificate/Kind",
                      "needs materials that expand alike along all axes, if "
@@ -432,7 +436,7 @@ namespace Debond
               "Loads/Temperature change"},
              {p.contact_boundaries.empty(),
               "there is no Contact boundary",
-              "Contact law/"},
+              "Contact law/, Boundary conditions/Foundation normal"},
              {!has_path,
               "there is no load path",
               "Load path/, Output/Load path"},

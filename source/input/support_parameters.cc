@@ -22,6 +22,20 @@ namespace Debond
         "nothing, or for each component 'free' or an expression, separated by ';'"),
       "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. Where it meets a flat contact boundary with Tangential displacement = fixed, it is along the normal of that. A load path's factors multiply it",
       "length");
+    const Pattern     direction("nothing, or components separated by ';'");
+    const std::string of_direction =
+      "The direction of the foundation's normal, out of the body, such as '0; -1' for a sphere on a plane, expressions as in Loads of any length: u_nu, gap and bonds are along it in place of the body's own normal";
+    table.bind("Boundary conditions/Foundation normal",
+               supports.normal,
+               direction,
+               of_direction,
+               "none");
+    table.bind_family("Boundary conditions/Foundation normal",
+                      supports.normals,
+                      direction,
+                      of_direction +
+                        "; of the contact boundary or part of this name",
+                      "none");
     const Pattern     gap("nothing, or an expression");
     const std::string documentation =
       "The distance g between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu. Negative where the body is too large for its place (press fit)";
@@ -75,13 +89,23 @@ namespace Debond
                          }))
           table.reject(path, "all components are free: leave it out");
       }
-    check_expression(
-      "Contact law/Initial gap", supports.gap, dimension, 1, constants, table);
-    for (const auto &[name, gap] : supports.gaps)
-      {
-        const std::string path = "Contact law/Initial gap " + name;
-        check_names(path, {name}, body, table);
-        check_expression(path, gap, dimension, 1, constants, table);
-      }
+    const auto check_all = [&](const std::string                        &entry,
+                               const std::string                        &text,
+                               const std::map<std::string, std::string> &own,
+                               const unsigned int n_components) {
+      check_expression(entry, text, dimension, n_components, constants, table);
+      for (const auto &[name, expression] : own)
+        {
+          const std::string path = entry + ' ' + name;
+          check_names(path, {name}, body, table);
+          check_expression(
+            path, expression, dimension, n_components, constants, table);
+        }
+    };
+    check_all("Contact law/Initial gap", supports.gap, supports.gaps, 1);
+    check_all("Boundary conditions/Foundation normal",
+              supports.normal,
+              supports.normals,
+              dimension);
   }
 } // namespace Debond

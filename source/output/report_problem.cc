@@ -103,6 +103,8 @@ namespace Debond
       record.line("clamped", list(problem.clamped_boundaries));
       line("roller", list(problem.supports.rollers));
       lines("displacement", problem.supports.displacements);
+      line("foundation normal", problem.supports.normal);
+      lines("foundation normal", problem.supports.normals);
       line("initial gap", problem.supports.gap);
       lines("initial gap", problem.supports.gaps);
       line("body force", problem.loads.body_force);

@@ -184,21 +184,37 @@ namespace Debond
       }
     for (const std::string &name : given.supports.rollers)
       supports.displacements.push_back({name, boundaries.at(name), true});
-    // The gap of all contact boundaries comes first, and those with an entry of
+    // What all contact boundaries have comes first, and those with an entry of
     // their own replace it.
-    if (!given.supports.gap.empty())
-      for (const dealii::types::boundary_id id : conditions.contact)
-        supports.gaps[id] = {
-          "", make_function<dim>(given.supports.gap, constants, 1)};
-    const auto &own = given.supports.gaps;
-    for_contact_boundaries(
-      given,
-      entries_of("Contact law/Initial gap", own),
-      conditions,
-      [&](const std::string &name, const dealii::types::boundary_id id) {
-        supports.gaps[id] = {name,
-                             make_function<dim>(own.at(name), constants, 1)};
-      });
+    const auto add = [&](const std::string                        &entry,
+                         const std::string                        &text,
+                         const std::map<std::string, std::string> &own,
+                         const unsigned int                        n_components,
+                         auto                                     &fields) {
+      if (!text.empty())
+        for (const dealii::types::boundary_id id : conditions.contact)
+          fields[id] = {"", make_function<dim>(text, constants, n_components)};
+      for_contact_boundaries(given,
+                             entries_of(entry, own),
+                             conditions,
+                             [&](const std::string               &name,
+                                 const dealii::types::boundary_id id) {
+                               fields[id] = {name,
+                                             make_function<dim>(own.at(name),
+                                                                constants,
+                                                                n_components)};
+                             });
+    };
+    add("Contact law/Initial gap",
+        given.supports.gap,
+        given.supports.gaps,
+        1,
+        supports.gaps);
+    add("Boundary conditions/Foundation normal",
+        given.supports.normal,
+        given.supports.normals,
+        dim,
+        supports.normals);
     return supports;
   }
 

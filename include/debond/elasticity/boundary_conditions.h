@@ -100,9 +100,9 @@ namespace Debond
 
 
 
-  /// The distance g >= 0 between the body at rest and the foundation.
+  /// A function of the place on contact boundaries.
   template <int dim>
-  struct InitialGap
+  struct FoundationField
   {
     std::string name; ///< of the boundary; empty if it is that of all others
     std::shared_ptr<const dealii::Function<dim>> value;
@@ -115,9 +115,16 @@ namespace Debond
   {
     std::vector<PrescribedDisplacement<dim>> displacements = {};
 
-    /// The gaps of the contact boundaries that have one. Where they meet the
-    /// least holds.
-    std::map<dealii::types::boundary_id, InitialGap<dim>> gaps = {};
+    using FoundationFields =
+      std::map<dealii::types::boundary_id, FoundationField<dim>>;
+
+    /// The distances g >= 0 between the body at rest and the foundation, of the
+    /// contact boundaries that have one. Where they meet the least holds.
+    FoundationFields gaps = {};
+
+    /// The directions, out of the body, along which u_nu, gap and bonds are
+    /// where that is not the body's own normal.
+    FoundationFields normals = {};
   };
 
 

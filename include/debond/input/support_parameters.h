@@ -26,6 +26,10 @@ namespace Debond
     /// are not that of all others, by the name of the boundary.
     std::string                        gap;
     std::map<std::string, std::string> gaps;
+
+    /// Likewise, where the normal of the foundation is not that of the body.
+    std::string                        normal;
+    std::map<std::string, std::string> normals;
   };
 
   /// Binds roller boundaries, prescribed displacements and the gap.
