@@ -178,8 +178,8 @@ def compare(problem, lifted):
         begin = time.time()
         x, said = solve(problem, start, lower, upper)
         yield name, problem.J(numpy.minimum(x, 0.)), said, time.time() - begin
-    if lifted:
+    for part in (0., 0.5) if lifted else ():
         begin = time.time()
-        x, said = ipopt(Lifted(problem), numpy.append(start, start + 0.5),
+        x, said = ipopt(Lifted(problem), numpy.append(start, start + part),
                         numpy.append(lower, start), numpy.append(upper, start + 1.))
-        yield "Ipopt, lifted", problem.J(x[:n]), said, time.time() - begin
+        yield f"Ipopt, lifted, from {part:g}", problem.J(x[:n]), said, time.time() - begin

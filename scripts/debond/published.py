@@ -129,6 +129,20 @@ def hertz_sphere(run):
     yield "radius of contact", radius, edge
 
 
+@problem("ball whose middle plane is moved", "code_aster V6.04.104, SSNV104", 0.05)
+def ball(run):
+    R, modulus = 50., 20000. / 0.91
+    for u, h, stated in (2., 0.5, 2798.3), (2., 0.125, 2798.3), (1., 0.1, 1978.7), (
+            0.02, 0.02, 2. * modulus / math.pi * math.sqrt(0.02 / 50.)):
+        results = run("published/sphere", {"Constants/u": u, "Constants/h": h})
+        top = parabola(results, math.sqrt(R * u))[0]
+        yield f"stress at the pole, {u:g} mm, cells of {h} mm, MPa", stated, top
+        if (u, h) == (2., 0.125):
+            force = results.summary["contact_reaction"][1]
+            yield ("the same by Hertz from Debond's force, MPa",
+                   (6. * force * modulus**2 / (math.pi**3 * R**2))**(1. / 3.), top)
+
+
 @problem("thick tube with a pressure inside", "Lamé", 1e-3)
 def thick_tube(run):
     for n in 10, 20, 40:
