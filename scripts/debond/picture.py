@@ -55,17 +55,17 @@ COLUMNS = [
     ("fronts", "position of the front, x", "length"), ("(.*)", r"\1", "")]
 
 
-def endings(text, dim):
-    """What follows the words for what is measured, by 'LENGTH, STRESS'. In 2D
-    forces and energies are per thickness."""
+def endings(text, is_per_thickness):
+    """What follows the words for what is measured, by 'LENGTH, STRESS'. Of plane
+    bodies forces and energies are per thickness."""
     length, _, stress = (word.strip() for word in text.partition(","))
     if text and not (length and stress):
         raise BadInput(f"the units '{text}' are not LENGTH, STRESS as in 'mm, MPa'")
     force = FORCES.get((length, stress.replace("^2", "²")),
                        stress and f"{stress} {length}²")
-    per = f"/{length}" if dim == 2 else ""
+    per = f"/{length}" if is_per_thickness else ""
     units = {"": "", "length": length, "stress": stress,
-             "zone": length and length + ("²" if dim == 3 else ""),
+             "zone": length and length + ("" if is_per_thickness else "²"),
              "force": force and force + per,
              "energy": force and f"{force} {length}{per}"}
     return {what: unit and f", {unit}" for what, unit in units.items()}
@@ -87,7 +87,8 @@ class Run:
         self.summary = read_summary(directory)
         if not self.summary:
             raise BadInput(f"{directory} has no summary.json of a run")
-        self.units = endings(units, self.summary["dimension"])
+        self.units = endings(units, self.summary["dimension"] == 2
+                             and self.summary.get("symmetry") != "axis")
         path = self.load_path = read_csv(os.path.join(directory, "load_path.csv"))
         self.factor = max(("factor", "displacement_factor"), key=lambda name: (
             numpy.ptp(path.get(name, 0.)) > 0, numpy.any(path.get(name, 1.) != 1)))

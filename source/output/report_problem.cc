@@ -166,15 +166,17 @@ namespace Debond
       problem.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
       n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
-    record.add({{"scene", problem.scene},
-                {"dimension", dim},
-                {"cells", scene.n_cells()},
-                {"degree", problem.degree},
-                {"degrees_of_freedom", n_dofs},
-                {"degrees_of_freedom_paper", n_dofs_paper},
-                {"contact_nodes", n_nodes},
-                {"method", choice.method},
-                {"linear_solver", choice.linear_solver}});
+    record.add(
+      {{"scene", problem.scene},
+       {"dimension", dim},
+       {"cells", scene.n_cells()},
+       {"symmetry", problem.symmetry == Symmetry::axis ? "axis" : "none"},
+       {"degree", problem.degree},
+       {"degrees_of_freedom", n_dofs},
+       {"degrees_of_freedom_paper", n_dofs_paper},
+       {"contact_nodes", n_nodes},
+       {"method", choice.method},
+       {"linear_solver", choice.linear_solver}});
     if (record.has_details())
       record.line("scene", problem.scene);
     const dealii::BoundingBox<dim> box(scene.problem()

@@ -106,9 +106,9 @@ for text, dim, force, energy in (
         ("mm, MPa", 2, ", N/mm", ", N mm/mm"), ("mm, N/mm^2", 3, ", N", ", N mm"),
         ("m, GPa", 2, ", GN/m", ", GN m/m"), ("in, psi", 3, ", psi in²", ", psi in² in"),
         ("", 2, "", "")):
-    units = picture.endings(text, dim)
+    units = picture.endings(text, dim == 2)
     assert (units["force"], units["energy"]) == (force, energy), units
-units = picture.endings("mm, MPa", 2)
+units = picture.endings("mm, MPa", True)
 for column, words in (("reaction_upper_end_y", "force of support upper end, y, N/mm"),
                       ("mean_top_x", "mean displacement of top, x, mm"),
                       ("largest_gap", "largest opening, mm"), ("J", "J, N mm/mm"),
