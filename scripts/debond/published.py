@@ -6,6 +6,7 @@ import dataclasses
 import math
 import os
 import pathlib
+import subprocess
 
 import numpy
 
@@ -29,23 +30,27 @@ class Problem:
     bound: float
     solve: object
 
-    def rows(self, program, directory="output/published"):
+    def rows(self):
         """Those of the table; title, source and seconds are of the first row."""
         seconds, found, results = 0., [], None
-        os.environ["DEBOND"] = program
 
-        def run(scene, settings=None):
+        def timed_run(*arguments):
             nonlocal seconds, results
-            results = runs.run(f"{SOURCE}/prm/{scene}.prm", settings, os.path.abspath(
-                f"{directory}/{os.path.basename(scene)}"))
+            results = run(*arguments)
             seconds += results.summary["timings_s"]["total"]
             return results
 
-        for quantity, stated, value, *word in self.solve(run):
+        for quantity, stated, value, *word in self.solve(timed_run):
             found.append([quantity, stated, value, value / stated - 1., *(
                 word or [state(results)]), results.summary["degrees_of_freedom"]])
         return [[self.title, self.source, *row, seconds] if row is found[0] else
                 ["", "", *row, None] for row in found]
+
+
+def run(scene, settings=None):
+    """Results of a scene of prm/, in a folder of output/published/."""
+    return runs.run(f"{SOURCE}/prm/{scene}.prm", settings,
+                    os.path.abspath(f"output/published/{os.path.basename(scene)}"))
 
 
 def problem(title, source, bound):
@@ -59,8 +64,8 @@ def problem(title, source, bound):
 def state(results):
     """The word for the minimum, and the certified interval."""
     certified = results.summary.get("certificate")
-    return results.summary["minimum"]["state"] + (f", J in [{certified['lower']:.5g}, {certified['upper']:.5g}]"
-                            if certified else "")
+    return results.summary["minimum"]["state"] + (
+        f", J in [{certified['lower']:.5g}, {certified['upper']:.5g}]" if certified else "")
 
 
 def snap_back(run, scene, opening, lift, force):
@@ -301,12 +306,10 @@ def bundle(run):
         "Certificate/Target": 0.005}).summary["functional"]
 
 
-def draw(program, directory="output/published"):
+def draw():
     """The double cantilever beam and the sphere of JKR beside their closed forms."""
-    os.environ["DEBOND"] = program
     figure, (left, right) = plots.plt.subplots(1, 2, figsize=(9., 3.6))
-    path = runs.run(f"{SOURCE}/prm/cookbook/delamination.prm", None,
-                    os.path.abspath(f"{directory}/delamination")).load_path
+    path = run("cookbook/delamination").load_path
     opening = path["displacement_factor"]
     left.plot(opening, 20. * path["reaction_upper_end_y"], ".-", label="Debond")
     running = opening[opening > 1.5]
@@ -316,9 +319,8 @@ def draw(program, directory="output/published"):
     for M, style in (0.02, "^"), (0.014, "s"), (0.01, "o"):
         points = []
         for u in numpy.linspace(-0.02, 0.05, 8):
-            summary = runs.run(f"{SOURCE}/prm/published/jkr-sphere.prm", {
-                "Constants/M": M, "Constants/u": u}, os.path.abspath(
-                    f"{directory}/jkr-sphere")).summary
+            summary = run("published/jkr-sphere",
+                          {"Constants/M": M, "Constants/u": u}).summary
             points.append((math.sqrt(12.**2 - summary["broken_zone"] / math.pi),
                            -summary["contact_reaction"][1]))
         right.plot(*zip(*points), style, label=f"Debond, M = {M}")
@@ -330,16 +332,14 @@ def draw(program, directory="output/published"):
     figure.savefig(f"{SOURCE}/doc/pictures/published.png", dpi=110)
 
 
-def others(program, directory="output/published"):
+def others():
     """Rows of what optimisers of others end at on two of the discrete problems."""
-    os.environ["DEBOND"] = program
     for title, scene, settings, points in (
             ("benchmark, a = 690, 80x8", "benchmark-80x8",
              {"Contact law/Bond stiffness": 690, "Solver/Method": "automatic"},
              [(0., 0.), (0.002, 1.38), (0.002, 0.)]),
             ("laminate, 32x4", "published/laminate", {}, LAMINATE)):
-        results = runs.run(f"{SOURCE}/prm/{scene}.prm", {**settings, "Output/Matrices": True},
-                           os.path.abspath(f"{directory}/others-{os.path.basename(scene)}"))
+        results = run(scene, {**settings, "Output/Matrices": True})
         least = results.summary["functional"]
         yield (title, "Debond", least, 0., results.summary["minimum"]["state"],
                results.summary["timings_s"]["solve"])
@@ -369,26 +369,29 @@ def main():
         "published, and prints what they state beside what it finds.")
     parser.add_argument("problems", metavar="WORD", nargs="*",
                         help="those whose title has one of these words; all if none")
-    parser.add_argument("--others", action="store_true", help="optimisers of others as well: "
-                        "of scipy, PETSc (python3-petsc4py) and Ipopt (coinor-libipopt1v5)")
+    parser.add_argument("--others", action="store_true", help="optimisers of scipy, PETSc and "
+                        "Ipopt as well")
     parser.add_argument("--doc", action="store_true",
                         help="write all tables and the picture to doc/")
     parser.add_argument("--debond", help="a program that is built already")
     options = parser.parse_args()
-    program = os.path.abspath(options.debond or cases.build())
+    os.environ["DEBOND"] = os.path.abspath(options.debond or cases.build())
     tables = {"problems": (
         ["problem", "source", "quantity", "stated", "Debond", "difference", "accepted",
          "word or interval", "unknowns", "s"],
-        [[*map(cell, row[:5]), percent(row[5]), f"{100. * chosen.bound:g} %", *row[6:8], f"{row[8]:.2g}" if row[8] else ""]
+        [[*map(cell, row[:5]), percent(row[5]), f"{100. * chosen.bound:g} %", *row[6:8],
+          f"{row[8]:.2g}" if row[8] else ""]
          for chosen in PROBLEMS if options.doc or
          any(word in chosen.title for word in options.problems or [""])
-         for row in chosen.rows(program)])}
+         for row in chosen.rows()])}
     if options.doc:
-        draw(program)
+        draw()
     if options.others or options.doc:
+        subprocess.run([f"{SOURCE}/scripts/install", "python3-petsc4py", "coinor-libipopt1v5"],
+                       check=True)
         tables["others"] = (["problem", "optimiser", "J", "above the least", "says", "s"], [
             [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
-            for row in others(program)])
+            for row in others()])
     for name, table in tables.items():
         text = report.markdown(*table)
         print("\n" + text, flush=True)
