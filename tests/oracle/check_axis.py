@@ -1,0 +1,537 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_axis.py DEBOND [COUNT [FIRST]]: bodies of revolution and foundations with a direction,
+beside finite elements of axisymmetric.py, which share nothing with the program: random boxes and
+frustums (S, g, J, law, displacements, forces, words, proofs), paths and arcs among all stationary
+states, domes on a plane, bodies that are glued, refined meshes; and closed forms."""
+import itertools
+import pathlib
+import re
+import shutil
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import msh
+from axisymmetric import LAW, SUPPORTS, Body
+from random_scenes import Draw
+from run_scenes import NO_PICTURES, Scenes, scene_text
+from vtu import Piece
+
+scenes = Scenes(sys.argv[1])
+check, close = scenes.check, scenes.close
+AXIS = ["Symmetry=axis", SUPPORTS + "Clamped boundaries="]
+ISOTROPIC = ["Material/Young modulus=70", "Material/Poisson ratio=0.3"]
+DEGREE_2 = ["Mesh/Degree=2", LAW + "Quadrature=gauss 3"]
+MM = "Solver/Method=majorise minimise"
+
+
+def vector(*values):
+    return "; ".join(x if isinstance(x, str) else repr(float(x)) for x in values)
+
+
+def grid(name, n, place):
+    """Writes a crossed grid under a map of the unit square. Returns the entries for it, and its
+    points, triangles and sides."""
+    points, faces, cells = msh.box(n, (1., 1.), crossed=True)
+    points, sides = [place(*p) for p in points], {}
+    for (group,), face in faces:
+        sides.setdefault(msh.SIDES[group - 1], []).append(tuple(face))
+    (scenes.directory / (name + ".msh")).write_text(
+        msh.text(points, faces, [((7,), cell) for _, cell in cells]))
+    return ["Mesh/Source=file", f"Mesh/File={name}.msh"], (points, [c for _, c in cells], sides)
+
+
+def tilted(draw, most):
+    """A direction at most so many degrees from downwards."""
+    angle = np.radians(draw.uniform(-most, most) - 90.)
+    return 3 * np.cos(angle), 3 * np.sin(angle)
+
+
+# ------------------------------------------------------------------ random scenes
+
+
+def random_scene(draw, name):
+    """Entries and mesh."""
+    n, inner, length = (draw.between(1, 4), draw.between(1, 3)), draw.choice(
+        [0., 0., draw.uniform(.1, 2.)]), draw.magnitude(-1., 1.)
+    height, shift, wider, tilt = draw.uniform(.3, 1.5), draw.uniform(-1., 1.), draw.choice(
+        [0., draw.uniform(-.4, .8)]), draw.choice([0., draw.uniform(-.3, .3)])
+
+    def place(x, y):
+        if 0 < x < 1 and 0 < y < 1:
+            x, y = x + draw.uniform(-.1, .1) / n[0], y + draw.uniform(-.1, .1) / n[1]
+        return length * (inner + x * (1 + wider * y)), length * (shift + height * y + tilt * x)
+
+    def value(size):
+        """Linear in x or y, or constant."""
+        size *= draw.uniform(.3, 1.)
+        slope = draw.uniform(-.1, .1) / length * draw.below(2)
+        return f"{size!r}*(1 + {slope!r}*{draw.choice('xy')})"
+
+    entries, mesh = grid(name, n, place)
+    E, degree = draw.magnitude(-2., 4.), draw.choice([1, 1, 2])
+    s = dict(e.split("=", 1) for e in entries)
+    s.update({"Symmetry": "axis", "Mesh/Degree": str(degree)})
+    if draw.chance(.3):
+        for key, low, high in (("Young moduli", E / 2, 2 * E), ("Poisson ratios", -.1, .3),
+                               ("Shear moduli", E / 5, E / 2)):
+            s["Material/" + key] = ", ".join(repr(draw.uniform(low, high)) for _ in range(3))
+        s["Material/Axis angle"], expansion = repr(draw.uniform(-180., 180.)), "1e-3, 2e-3, -5e-4"
+    else:
+        s["Material/Young modulus"], expansion = repr(E), "1e-3"
+        s["Material/Poisson ratio"] = repr(draw.uniform(-.2, .47))
+    names = draw.shuffled(["bottom", "top", "right"] + ["left"] * (inner > 0.))
+    contact = names[:draw.choice([1, 1, 1, 2])]
+    tangential = draw.choice(["fixed", "free"])
+    s.update({SUPPORTS + "Contact boundary": ", ".join(contact),
+              SUPPORTS + "Clamped boundaries": "", LAW + "Tangential displacement": tangential})
+    # Where sides meet, they agree on what they prescribe.
+    size, kinds = E * draw.magnitude(-4., -2.), ["Clamped", "Roller", "Displacement", "", ""]
+    for name in names[len(contact):]:
+        kind = draw.choice(kinds)
+        kinds = ["Roller", ""] if kind in ("Clamped", "Roller") else [""] if kind else kinds
+        if kind == "Displacement":
+            s[f"{SUPPORTS}Displacement {name}"] = vector(
+                draw.choice(["free", "0"]), size / E * length * draw.uniform(.3, 1.))
+        elif kind:
+            s[f"{SUPPORTS}{kind} boundaries"] = name
+        else:
+            load = draw.choice(["Traction", "Pressure", "Force"])
+            sign = draw.choice([-1., 1.])
+            s[f"Loads/{load} {name}"] = vector(value(size), value(sign * size)) if (
+                load == "Traction") else value(sign * size) if load == "Pressure" else vector(
+                    size * length**2, 2 * sign * size * length**2)
+    if draw.chance(.5):
+        s[f"Loads/Traction {contact[0]}"] = vector(value(size), value(-size))
+    if draw.chance(.3) or not any("Loads" in key for key in s):
+        s["Loads/Body force"] = vector(value(size / length), value(-size / length))
+    if draw.chance(.3):
+        s["Material/Thermal expansion"], s["Loads/Temperature change"] = expansion, value(
+            size / E * 1e3)
+    if draw.chance(.4):
+        for name in contact:
+            x, y = tilted(draw, 50.)
+            x, y = {"bottom": (x, y), "top": (x, -y), "left": (y, x), "right": (-y, x)}[name]
+            s[f"{SUPPORTS}Foundation normal {name}"] = vector(x, f"{y!r}*(1+{.1 / length!r}*x)")
+    s[LAW + "Quadrature"] = draw.choice(["gauss 2", "gauss 3", "gauss 4"] + [
+        "nodal", "nodal", "nodal", "midpoint"] * (degree == 1))
+    k = E / length * draw.magnitude(-1.5, 1.)
+    s[LAW + "Bond stiffness"], s[LAW + "Bond threshold"] = value(k), "1e9"
+    body = Body([f"{key}={value}" for key, value in s.items()], *mesh)
+    s0 = body.minimise([True] * len(body.bonds))
+    M = (np.abs(s0).max(initial=0.) or size / E * length) * draw.uniform(.3, 1.3)
+    s[LAW + "Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
+    if s[LAW + "Law"] == "winkler":
+        s[LAW + "Bond threshold"] = value(M)
+    elif s[LAW + "Law"] == "bilinear":
+        s.update({LAW + "Bond stiffness": repr(k), LAW + "Bond threshold": "",
+                  LAW + "Bond strength": repr(k * M),
+                  LAW + "Fracture energy": repr(k * M * M * draw.uniform(.7, 3.))})
+    else:
+        s.pop(LAW + "Bond stiffness"), s.pop(LAW + "Bond threshold")
+        if s[LAW + "Law"] == "curve":
+            s[LAW + "Curve"] = ", ".join(f"{p!r}:{t!r}" for p, t in (
+                (0, 0), (M, k * M), (M, k * M / 2), (2 * M, k * M), (2 * M, 0)))
+    if draw.chance(.25):
+        s[LAW + "Initial gap"] = value(M)
+    # What nothing but bonds holds is not for all methods.
+    moduli = np.linalg.eigvalsh(body.S) if body.contact else [1.]
+    s["Solver/Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
+    if moduli[0] < 1e-9 * moduli[-1]:
+        s["Solver/Method"] = "majorise minimise"
+    elif s["Solver/Method"] != "energy bundle":
+        s["Solver/Search"] = draw.choice(["automatic", "none", "full"])
+        s["Solver/Linear solver"] = draw.choice(["direct"] * 4 + ["multigrid"])
+        s["Solver/Prove"] = str(s[LAW + "Quadrature"] == "nodal" and draw.chance(.4)).lower()
+    for name in names:
+        s[f"Probes/force_{name}"] = "force " + name
+    return [f"{key}={value}" for key, value in s.items()], mesh
+
+
+def read_matrix(file):
+    """Of symmetric ones the lower half is there."""
+    head, *lines = [line for line in file.read_text().splitlines() if not line.startswith("% ")]
+    rows, columns = map(int, lines[0].split())
+    values, matrix = list(map(float, lines[1:])), np.zeros((rows, columns))
+    if "symmetric" not in head:
+        return np.array(values).reshape(columns, rows).T
+    matrix.T[np.triu_indices(rows)] = values
+    return matrix + np.tril(matrix, -1).T
+
+
+def run(numbers, all_settings):
+    """Of scenes, summaries with S and g of the contact nodes, in one run."""
+    names = [f"random-{number}.prm" for number in numbers]
+    for name, settings in zip(names, all_settings):
+        (scenes.directory / name).write_text(scene_text("scene.prm", [
+            *NO_PICTURES, *settings, "Output/Matrices=true", "Output/Directory=out-" + name]))
+    scenes.run(*names)
+    for name in names:
+        output, matrices = scenes.directory / ("out-" + name), {}
+        if (output / "S.mtx").exists():
+            matrices = {key: read_matrix(output / f"{key}.mtx") for key in ("S", "g")}
+        yield {**scenes.summary(output.name), **matrices}
+
+
+def state_of(body, result):
+    """s from the profile in the order of the body's unknowns, and that order: of those that a
+    corner may have, the one with the program's S."""
+    index, size = {dof: k for k, dof in enumerate(body.contact)}, np.abs(body.points).max()
+    rows = [row for row in result["profile"] if row["state"] != "held"]
+    choices = [[slot for slot, dof in body.slots.items() if not isinstance(dof, np.ndarray)
+                and np.hypot(*(body.points[slot[0]] - [row["x"], row["y"]])) < 1e-9 * size]
+               for row in rows]
+    found = None, None, np.inf
+    for slots in itertools.product(*choices):
+        if len(set(slots)) == len(slots) == len(index):
+            order = [index[body.slots[slot]] for slot in slots]
+            off = np.abs(result["S"] - body.S[np.ix_(order, order)]).max(initial=0.)
+            if off < found[2]:
+                s = np.zeros(len(order))
+                s[order] = [row["u_nu"] - body.gap[slot] for row, slot in zip(rows, slots)]
+                found = s, order, off
+    return found[:2]
+
+
+def judge(settings, mesh, result, draw):
+    """All that a run says beside the body."""
+    body = Body(settings, *mesh)
+    is_rough = "multigrid" in settings[-1] or "multigrid" in str(result["linear_solver"]) or (
+        "bundle" in result["method"])
+    loose = 1000. if is_rough else 1.
+    s, order = state_of(body, result)
+    check("contact nodes", s is not None, result["profile"])
+    if s is None or not len(s) or np.abs(s).max() > np.abs(mesh[0]).max():
+        return
+    own = body.S[np.ix_(order, order)]
+    if not is_rough:
+        close("S", np.abs(result["S"] - own).max(), 0., 1e-9, np.abs(own).max())
+        close("g", np.abs(result["g"].ravel() - body.g[order]).max(), 0., 1e-9,
+              np.abs(body.g).max() + np.abs(own).max() * np.abs(s).max())
+    J, size, u = body.J(s), body.size(s), body.displacement(s)
+    forces, length = body.forces(u), np.abs(u).max()
+    scale = np.abs(forces).max() + np.abs(body.f).max()
+    close("J", result["functional"], J, 1e-9 * loose, size)
+    shift = 1e-10 * loose * np.abs(s).max() + 1e-12 * max(map(abs, body.gap.values()))
+    check("law", body.violation(s, shift) < 1e-8 * loose, body.violation(s, shift))
+    for name, faces in body.sides.items():
+        if body.area(name):
+            for x, y in zip(result["mean_displacements"][name], body.mean(u, name)):
+                close("mean " + name, x, y, 1e-8 * loose, length)
+        nodes = {v for nodes, *_ in faces for v in nodes}
+        at_axis = int(min(body.points[v][0] for v in nodes) == 0.)
+        for x, y in list(zip(result["probes"].get("force_" + name, []), sum(
+                forces[v] for v in nodes)))[at_axis:]:
+            close("force " + name, x, y, 1e-8 * loose, scale)
+    close("applied force", result["applied_force"][1], body.f[1::2].sum(), 1e-9, scale)
+    close("reactions", result["clamped_reaction"][1] + result["contact_reaction"][1],
+          forces[:, 1].sum(), 1e-8 * loose, scale)
+    check("balance", result["force_imbalance"] < 1e-9 * loose, result["force_imbalance"])
+    word = result["minimum"]["state"]
+    for _ in range(20 * (word != "stationary")):
+        d = np.array([draw.uniform(-1., 1.) for _ in s]) * np.abs(s).max() * 1e-6
+        check(f"{word}: J rises", body.J(np.minimum(s + d, 0.)) >= J - 1e-11 * size)
+    if body.of[LAW + "Law"] in ("winkler", "none"):
+        least = min(map(body.J, body.minima(draw)), default=np.inf)
+        check("above the least", word != "global" or J <= least + 1e-8 * size, (J, least))
+        bound = (result.get("proof") or {}).get("lower_bound")
+        check("lower bound", bound is None or bound <= least + 1e-10 * size, (bound, least))
+
+
+def check_random(count=60, first=0):
+    drawn = []
+    for number in range(first, first + count):
+        draw = Draw(number)
+        try:
+            drawn.append((number, draw, *random_scene(draw, f"random-{number}")))
+        except (np.linalg.LinAlgError, TypeError):
+            pass  # nothing holds the body
+    counts = {}
+    for (number, draw, settings, mesh), result in zip(drawn, run(
+            [d[0] for d in drawn], [d[2] for d in drawn])):
+        scenes.section(f"Scene {number}")
+        if result["status"] == "success":
+            judge(settings, mesh, result, draw)
+        counts[result["status"]] = counts.get(result["status"], 0) + 1
+    scenes.section("Random scenes")
+    check("most are solved", counts.get("success", 0) > .7 * count, counts)
+
+
+# ------------------------------------------------------------------ paths
+
+
+def stationary(body, factor, are_lasting, kinks):
+    """J, s and the energy of broken bonds: of all choices of bonds that hold, are broken (for
+    good: anywhere) or are at the threshold, and of nodes that touch."""
+    body.condense(factor)
+    n = len(body.contact)
+    for kinds in itertools.product(("holds", "broken", "kink")[:2 + kinks], repeat=len(body.bonds)):
+        Q, g, fixed, constant = body.S.copy(), body.g.copy(), {}, body.constant
+        broken = 0.
+        for kind, b in zip(kinds, body.bonds):
+            k, M = b.weight * b.stiffness, b.law.threshold
+            if kind == "holds":
+                Q += k * np.outer(b.row, b.row)
+                g -= k * b.held * b.row
+                constant += k * b.held**2 / 2
+            else:
+                broken += b.weight * b.law.energy(M)
+            if kind == "kink" and b.row.any():
+                fixed[int(np.argmax(b.row))] = -M - b.held, k * M
+        noise = 1e-7 * np.abs(g).max()
+        for touching in itertools.product((False, True), repeat=n):
+            if kinds.count("kink") > len(fixed) or any(touching[i] for i in fixed):
+                continue
+            rest, s = [i for i in range(n) if not touching[i] and i not in fixed], np.zeros(n)
+            for i, (value, _) in fixed.items():
+                s[i] = value
+            if rest and np.linalg.matrix_rank(Q[np.ix_(rest, rest)]) < len(rest):
+                continue
+            s[rest] = np.linalg.solve(Q[np.ix_(rest, rest)], (g - Q @ s)[rest])
+            force, near = g - Q @ s, 1e-7 * (np.abs(s).max() + max(
+                b.law.threshold for b in body.bonds))
+            if s.max() <= near and force[list(touching)].min(initial=0.) >= -noise and all(
+                    -pull - noise <= force[i] <= noise for i, (_, pull) in fixed.items()) and all(
+                        b.opening(s) <= b.law.threshold + near if kind == "holds" else
+                        are_lasting or b.opening(s) >= b.law.threshold - near
+                        for kind, b in zip(kinds, body.bonds)):
+                yield constant + s @ Q @ s / 2 - g @ s + broken, s, broken
+
+
+def check_path(number):
+    """Its states, its global branch and its arc are among all that are stationary."""
+    draw = Draw(number)
+    inner, tilt = (draw.choice([0., draw.uniform(*ends)]) for ends in ((.3, 2.), (-.3, .3)))
+    height = draw.uniform(.4, 1.5)
+    entries, mesh = grid(f"path-{number}", (2, draw.between(1, 2)),
+                         lambda x, y: (inner + x, height * y + tilt * x))
+    is_nodal, is_lasting = draw.chance(.7), draw.chance(.3)
+    settings = [*entries, *AXIS, "Material/Young modulus=100", "Material/Poisson ratio=0.3", MM,
+                LAW + "Quadrature=" + ("nodal" if is_nodal else "gauss 1"),
+                SUPPORTS + "Contact boundary=bottom",
+                LAW + "Tangential displacement=" + draw.choice(["free", "fixed"]),
+                LAW + f"Bond stiffness={draw.magnitude(.5, 2.)!r}",
+                LAW + f"Bond threshold={draw.uniform(.001, .01)!r}",
+                LAW + f"Initial gap={draw.choice([0., draw.uniform(0., .004)])!r}",
+                "Loads/Traction top=" + vector(
+                    draw.uniform(-.5, .5),
+                    f"{draw.uniform(.1, .5)!r}*(1+{draw.uniform(-1., 1.)!r}*x)"),
+                SUPPORTS + draw.choice(["Roller boundaries=right, top", "Clamped boundaries=right",
+                                        f"Displacement top=0; {draw.uniform(.002, .02)!r}"])]
+    if draw.chance(.4):
+        settings.append(SUPPORTS + "Foundation normal=" + vector(*tilted(draw, 40.)))
+    path = ["Load path/Factors=" + ", ".join(repr(draw.uniform(-.3, 2.)) for _ in range(4)),
+            "Load path/Bonds heal=" + str(not is_lasting).lower(), "Load path/Global branch=" + (
+                "none" if is_lasting else "prove" if is_nodal else "search"),
+            "Load path/Arc=" + str(is_nodal and not is_lasting).lower()]
+    result, body = scenes.solve(*settings, *path), Body(settings, *mesh)
+    check("arrives", result["status"] in ("success", "comes off"), result["errors"])
+    for row in result["path"]:
+        at = f"factor {row['factor']}"
+        found = list(stationary(body, row["factor"], is_lasting, False))
+        size = max(abs(J) for J, *_ in found) + body.size(np.zeros(len(body.contact)))
+        near = [s for J, s, broken in found if abs(J - row["J"]) < 1e-8 * size and (
+            not is_lasting or abs(broken - row["dissipated_energy"]) < 1e-8 * size)]
+        check(at, near, (row["J"], [J for J, *_ in found]))
+        check(at + ": energies", any(
+            abs(row["unit_load_work"] - body.f @ u) < 1e-6 * size
+            and abs(row["elastic_energy"] - u @ body.K @ u / 2) < 1e-6 * size
+            for u in map(body.displacement, near)), row)
+        if not is_lasting:
+            least = min(J for J, *_ in found)
+            check(at + ": least", row["global_J"] >= least - 1e-8 * size and (
+                row["global_minimum"] != "global" or row["global_J"] <= least + 1e-8 * size),
+                  (row["global_J"], least))
+    for row in result["arc"]:
+        found = [J for J, *_ in stationary(body, row["factor"], False, True)]
+        size = max(map(abs, found), default=0.) + body.size(np.zeros(len(body.contact))) + 1e-9
+        check(f"arc {row['factor']}", any(abs(J - row["J"]) < 1e-6 * size for J in found),
+              (row["J"], found))
+
+
+# ------------------------------------------------------------------ other bodies
+
+
+def same_J(name, settings, body, result, starts):
+    """The J of a run is that of a descent."""
+    values = [body.J(s) for s in starts(body) if s is not None]
+    check(name, result["status"] == "success" and values and min(
+        abs(J - result["functional"]) for J in values) < 1e-9 * abs(values[0]),
+          (result.get("functional"), values, result["errors"]))
+
+
+def check_domes():
+    """A sphere's polygon is pressed onto a plane, along the plane's normal."""
+    for n, more in itertools.product(((4, 2), (8, 3)), (
+            [LAW + "Law=none"], [LAW + "Law=none", *DEGREE_2],
+            [LAW + "Bond stiffness=5", LAW + "Bond threshold=0.01"])):
+        entries, mesh = grid(f"dome-{n[0]}", n, lambda x, y: (
+            .7 * x, (1 - np.sqrt(1 - .49 * x * x)) * (1 - y) + .8 * y))
+        settings = [*entries, *AXIS, *ISOTROPIC, *more, SUPPORTS + "Contact boundary=bottom",
+                    SUPPORTS + "Foundation normal=0; -1", LAW + "Initial gap=y",
+                    SUPPORTS + "Displacement top=free; -0.05", LAW + "Tangential displacement=free"]
+        same_J(f"{n}, {more}", settings, Body(settings, *mesh), scenes.solve(*settings),
+               lambda body: body.minima(Draw(1)))
+
+
+def check_cuts():
+    """A box of the program that is cut along y = 1."""
+    points, faces, cells = msh.box((3, 4), (1.5, 2.), crossed=True)
+    low = sorted((v for v, p in enumerate(points) if p[1] == 1.), key=lambda v: points[v][0])
+    upper = {v: len(points) + k for k, v in enumerate(low)}
+    triangles = [[upper.get(v, v) if sum(points[w][1] for w in cell) > 3. else v for v in cell]
+                 for _, cell in cells]
+    sides = {"cut_1": [(upper[a], upper[b]) for a, b in zip(low, low[1:])]}
+    for (group,), face in faces:
+        above = sum(points[v][1] for v in face) > 2.
+        sides.setdefault(msh.SIDES[group - 1], []).append(
+            [upper.get(v, v) if above else v for v in face])
+    points += [points[v] for v in low]
+    for more in ([], DEGREE_2, [LAW + "Tangential displacement=free"], [LAW + "Initial gap=0.002*x"],
+                 [LAW + "Quadrature=gauss 2"]):
+        settings = [*AXIS, *ISOTROPIC, "Mesh/Lengths=1.5, 2", "Mesh/Cells=3, 4", "Mesh/Cuts=y = 1",
+                    SUPPORTS + "Clamped boundaries=bottom", SUPPORTS + "Contact boundary=cut_1",
+                    "Loads/Traction top=0.2; 0.5*(1+x)", LAW + "Bond stiffness=60",
+                    LAW + "Bond threshold=0.05", MM, "Solver/Search=none", *more]
+        same_J(f"cut, {more}", settings, Body(settings, points, triangles, sides, [
+            (up, v) for v, up in upper.items()]), scenes.solve(*settings),
+               lambda body: [body.descend([True] * len(body.bonds))])
+
+
+def check_refined():
+    """On the mesh that the program came to, whose vertices are numbers of single precision."""
+    scenes.section("Refined")
+    for more in ([], DEGREE_2):
+        settings = [*AXIS, *ISOTROPIC, *more, "Mesh/Lengths=2, 1", "Mesh/Cells=4, 2",
+                    SUPPORTS + "Contact boundary=bottom", SUPPORTS + "Roller boundaries=right",
+                    "Loads/Traction top=0; 0.1*x", LAW + "Bond stiffness=30",
+                    LAW + "Bond threshold=0.02", "Accuracy/Maximum unknowns=500", MM]
+        (scenes.directory / "refined.prm").write_text(
+            scene_text("scene.prm", [*settings, "Output/Directory=refined"]))
+        scenes.run("refined.prm")
+        shutil.copy(scenes.directory / "refined/body.vtu", scenes.directory)
+        result, piece = scenes.summary("refined"), Piece(scenes.directory / "body.vtu")
+        n = piece.cells["offsets"][0]
+        cells = [piece.cells["connectivity"][k:k + 3] for k in range(0, n * piece.n_cells, n)]
+        number = {v: k for k, v in enumerate(sorted({v for cell in cells for v in cell}))}
+        points = [piece.points[3 * v:3 * v + 2] for v in number]
+        cells = [[number[v] for v in cell] for cell in cells]
+        sides = {side: [(a, b) for cell in cells for a, b in zip(cell, cell[1:] + cell[:1])
+                        if points[a][axis] == points[b][axis] == value]
+                 for side, axis, value in (("right", 0, 2.), ("bottom", 1, 0.), ("top", 1, 1.))}
+        check("levels", len(result["levels"]) > 1)
+        same_J("refined", settings, Body(settings, points, cells, sides), result,
+               lambda body: [body.descend([True] * len(body.bonds))])
+
+
+def check_directions():
+    """The normals of the body given as directions change nothing; all is turned together."""
+    plain = ["Mesh/Lengths=2, 1", "Mesh/Cells=6, 3", "Material/Young modulus=100",
+             SUPPORTS + "Contact boundary=bottom", SUPPORTS + "Clamped boundaries=left",
+             LAW + "Bond stiffness=50", LAW + "Bond threshold=0.01"]
+    plain_J, tilted_J = [], []
+    for degrees, more in itertools.product((0, 30, -125), (
+            [], DEGREE_2, [LAW + "Tangential displacement=free"],
+            [LAW + "Tangential displacement=bonded"])):
+        c, t = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+
+        def turned(x, y, times=""):
+            return vector(*(f"{float(z)!r}{times}" for z in (c * x - t * y, t * x + c * y)))
+        scene = [*plain, *more, f"Mesh/Rotation={degrees}", "Loads/Traction top=" + turned(.3, 1.)]
+        J, *others = [scenes.solve(*scene, *normal)["functional"] for normal in (
+            [], [SUPPORTS + "Foundation normal=" + turned(0, -7.)],
+            [SUPPORTS + "Foundation normal bottom=" + turned(0, -1., "*(1 + x^2)")])]
+        for other in others:
+            close(f"{degrees}, {more}", other, J, 1e-12)
+        if not more:
+            plain_J.append(J)
+            tilted_J.append(scenes.solve(*scene, SUPPORTS + "Foundation normal=" + turned(.6, -1.))[
+                "functional"])
+    for J in plain_J[1:] + tilted_J[1:]:
+        close("turned", J, (plain_J if J in plain_J else tilted_J)[0], 1e-12)
+    check("tilted", abs(tilted_J[0] / plain_J[0] - 1) > 1e-3, (tilted_J, plain_J))
+    for normal in ("0; 1", "1; 0", "0; 0", "0; -1; 0", "0"):
+        result = scenes.solve(*plain, "Loads/Traction top=0; 1",
+                              f"{SUPPORTS}Foundation normal={normal}")
+        check("refused " + normal, result["exit_code"] == 2 and "Foundation normal" in result[
+            "errors"], result["errors"])
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+def check_tube():
+    """That of Lame."""
+    E, nu, p, a, b = 70., .3, 2., 1., 2.
+    A = p * a * a / (b * b - a * a)
+    exact = (1 + nu) / E * A * ((1 - 2 * nu) * a + b * b / a)
+    for more, order, tolerance in (([], 3.3, 1e-3), (DEGREE_2, 12., 1e-6)):
+        errors = []
+        for n in (5, 10, 20):
+            result = scenes.solve(
+                *grid(f"tube-{n}", (n, n // 5), lambda x, y: (a + (b - a) * x, .4 * y))[0], *AXIS,
+                *ISOTROPIC, *more, SUPPORTS + "Contact boundary=", f"Loads/Pressure left={p}",
+                SUPPORTS + "Roller boundaries=bottom, top")
+            errors.append(result["mean_displacements"]["left"][0] / exact - 1)
+            check("balance", result["force_imbalance"] < 1e-10, result["force_imbalance"])
+        check(f"{more}", abs(errors[-1]) < tolerance and all(
+            x / y > order for x, y in zip(errors, errors[1:])), errors)
+
+
+def check_cylinder():
+    """Uniform states: tension and heat; a column on bonds, which hold up to their strength; a
+    shaft that shrinks in a ring to which it is glued, or is pressed in."""
+    E, nu, R, H, sigma, heat, k = 70., .3, 1.5, 2., 5., 3e-3, 100.
+    area, stiff = np.pi * R * R, E / (1 + nu) / (1 - 2 * nu)
+    entries = [*grid("cylinder", (4, 3), lambda x, y: (R * x, H * y))[0], *AXIS, *ISOTROPIC,
+               "Material/Thermal expansion=1e-3", f"{LAW}Bond stiffness={k}"]
+    ring = [SUPPORTS + "Contact boundary=right", SUPPORTS + "Roller boundaries=bottom, top",
+            LAW + "Bond threshold=1"]
+    for more in ([], DEGREE_2):
+        result = scenes.solve(*entries, *more, SUPPORTS + "Contact boundary=", SUPPORTS +
+                              "Roller boundaries=bottom", f"Loads/Traction top=0; {sigma}",
+                              "Loads/Temperature change=3")
+        means = result["mean_displacements"]
+        close("radius", means["right"][0], R * (heat - nu * sigma / E), 1e-12)
+        close("length", means["top"][1], H * (sigma / E + heat), 1e-12)
+        close("stress", result["largest_von_mises"], sigma, 1e-10)
+        close("reaction", result["reactions"]["bottom"][1], -sigma * area, 1e-12)
+        for M, status in ((sigma / k * 1.00001, "success"), (sigma / k * .99999, "comes off")):
+            pulled = scenes.solve(*entries, *more, SUPPORTS + "Contact boundary=bottom",
+                                  f"Loads/Force top=0; {sigma * area!r}",
+                                  f"{LAW}Bond threshold={M!r}", "Solver/Search=none",
+                                  LAW + "Tangential displacement=free")
+            check("strength", pulled["status"] == status, (M, pulled["status"]))
+            if status == "success":
+                close("column", pulled["functional"], -area * sigma**2 / 2 * (1 / k + H / E), 1e-12)
+                close("pull", pulled["contact_reaction"][1], -sigma * area, 1e-11)
+                check("opening", max(abs(row["u_nu"] * k / sigma + 1)
+                                     for row in pulled["profile"]) < 1e-11)
+        cold = scenes.solve(*entries, *more, *ring, "Loads/Temperature change=-3")
+        close("shrinks", cold["mean_displacements"]["right"][0],
+              -R * (1 + nu) * heat * stiff / (stiff + k * R), 1e-11)
+        tight = scenes.solve(*entries, *more, *ring, LAW + "Initial gap=-0.01")
+        close("press fit", tight["functional"], np.pi * H * stiff * .01**2, 1e-11)
+        close("pressure", tight["profile"][1]["normal_force_density"], stiff * .01 / R, 1e-10)
+
+
+def check_units():
+    """The estimated error in other units of length."""
+    for more in ([],):
+        errors = [scenes.solve(
+            *AXIS, *ISOTROPIC, *more, f"Mesh/Lengths={L}, {L}", "Mesh/Cells=6, 6", SUPPORTS +
+            "Clamped boundaries=bottom", SUPPORTS + "Contact boundary=", "Loads/Traction top=0; 1")[
+                "estimated_error"] for L in (1., 1000.)]
+        close(f"error of the mesh, {more}", errors[1], errors[0], 1e-6)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 2:
+        scenes.together(*((check_.__name__, check_) for check_ in (
+            check_domes, check_cuts, check_directions, check_tube, check_cylinder, check_units)),
+            *((f"path {number}", check_path, number) for number in range(12)))
+        check_refined()
+    check_random(*map(int, sys.argv[2:]))
+    scenes.end()
