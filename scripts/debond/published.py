@@ -155,7 +155,7 @@ def thick_tube(run):
             "published/thick-tube", {"Constants/n": n}).summary["probes"]["inside"][0]
 
 
-def pull_off_on_springs(k, w, n=400):
+def pull_off_on_springs(k, w, n):
     """The force that pulls a rigid strip of the half width 1 off a half-plane, to which
     springs of the stiffness k hold it until they have taken w: the springs' integral
     equation by collocation."""
@@ -176,19 +176,28 @@ def pull_off_on_springs(k, w, n=400):
     return math.sqrt(2. * k * w) / edge
 
 
-@problem("strip contact, pull-off", "Kendall, J. Phys. D 4 (1971); Johnson (1985)", 0.012)
+def first_break(run, scene, k):
+    """The factor at which the first bond of this stiffness breaks."""
+    return run(f"published/{scene}", {"Constants/stiff": k}).load_path_arc["factor"][1]
+
+
+@problem("strip contact, pull-off", "Kendall, J. Phys. D 4 (1971); Johnson (1985)", 0.01)
 def strip_contact(run):
-    force = run("published/strip-contact").load_path_arc["factor"][1]
-    word = "arc, stable"
-    yield "sqrt(2 pi a E* w)", math.sqrt(2. * math.pi * E_STAR * 1e-4), force, word
-    yield ("the same on springs, integral equation", pull_off_on_springs(80., 1e-4), force,
-           word)
+    w, word = 1e-4, "arc, stable"
+    for k in 80., 320.:
+        force = first_break(run, "strip-contact", k)
+        yield f"sqrt(2 pi a E* w), k = {k:g}", math.sqrt(2. * math.pi * E_STAR * w), force, word
+        # The error of the collocation is quadratic.
+        coarse, fine = (pull_off_on_springs(k, w, n) for n in (400, 800))
+        yield ("the same on springs, integral equation", fine + (fine - coarse) / 3., force,
+               word)
 
 
-@problem("flat circular punch, pull-off", "Kendall, J. Phys. D 4 (1971)", 0.01)
+@problem("flat circular punch, pull-off", "Kendall, J. Phys. D 4 (1971)", 0.015)
 def round_punch(run):
-    yield ("sqrt(8 pi E* w a^3)", math.sqrt(8. * math.pi * E_STAR * 1e-4),
-           run("published/round-punch").load_path_arc["factor"][1], "arc, stable")
+    for k in 80., 320.:
+        yield (f"sqrt(8 pi E* w a^3), k = {k:g}", math.sqrt(8. * math.pi * E_STAR * 1e-4),
+               first_break(run, "round-punch", k), "arc, stable")
 
 
 @problem("blister under a circular plate", "clamped plate, linear fracture mechanics", 0.01)
@@ -202,20 +211,21 @@ def plate_blister(run):
            math.sqrt(32. * stiffness * G / (3. * a**4)), path["change_factor"][-1])
 
 
-@problem("plate with a crack, strength", "Tada, Paris, Irwin (1973)", 0.005)
+@problem("plate with a crack, strength", "Tada, Paris, Irwin (1973)", 0.01)
 def cracked_plate(run):
     part = 0.25  # of the width
     shape = (1. - 0.025 * part**2 + 0.06 * part**4) / math.sqrt(math.cos(math.pi * part / 2.))
-    yield ("K of the finite width", math.sqrt(2e-4 * E_STAR / math.pi) / shape,
-           run("published/cracked-plate").load_path_arc["factor"][1], "arc, stable")
+    for k in 80., 320.:
+        yield (f"K of the finite width, k = {k:g}", math.sqrt(2e-4 * E_STAR / math.pi) / shape,
+               first_break(run, "cracked-plate", k), "arc, stable")
 
 
-@problem("JKR, cylinder", "Barquins, J. Adhesion 26 (1988)", 0.04)
+@problem("JKR, cylinder", "Barquins, J. Adhesion 26 (1988)", 0.08)
 def jkr_cylinder(run):
     R, w = 10., math.pi / 0.91 / 200.
     for M in 0.1, 0.05, 0.025:
         results = run("published/jkr-cylinder", {"Constants/M": M, "Certificate/Kind":
-                                                 "global" if M > 0.03 else "none"})
+                                                 "global" if M == 0.1 else "none"})
         a = 12. - results.summary["broken_zone"]
         yield (f"pull at Debond's half width {a:.3f}, M = {M}",
                math.sqrt(2. * math.pi * E_STAR * w * a) - math.pi * E_STAR * a**2 / (4. * R),
@@ -224,7 +234,7 @@ def jkr_cylinder(run):
 
 @problem("JKR, sphere", "Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971)", 0.05)
 def jkr_sphere(run):
-    for M in 0.02, 0.014, 0.01, 0.007:
+    for M in 0.02, 0.014, 0.01:
         found = [run("published/jkr-sphere", {"Constants/M": M, "Constants/u": u})
                  for u in (0.03, 0.035)]
         yield (f"pull-off, 1.5 pi w R, M = {M}", 4. * E_STAR / 30., max(
