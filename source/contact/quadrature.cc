@@ -44,7 +44,6 @@ namespace Debond
               points[q].barycentric[k] = rule.point(q)[k - 1];
               points[q].barycentric[0] -= rule.point(q)[k - 1];
             }
-          points[q].centroid = points[q].barycentric;
         }
       return points;
     }
@@ -99,8 +98,6 @@ namespace Debond
                 points[k].weight = 1. / dim;
                 points[k].barycentric.fill(0.);
                 points[k].barycentric[k] = 1.;
-                points[k].centroid.fill(1. / (1. + dim));
-                points[k].centroid[k] = 2. / (1. + dim);
               }
             break;
           // One point a face is as exact for linear functions as the vertices,
@@ -109,13 +106,17 @@ namespace Debond
             points.resize(1);
             points[0].weight = 1.;
             points[0].barycentric.fill(1. / dim);
-            points[0].centroid = points[0].barycentric;
             break;
           case Rule::gauss:
             points = in_barycentric_coordinates<dim>(
               gauss_rule<dim>(parameters.gauss_points));
             break;
         }
+      for (QuadraturePoint &point : points)
+        for (unsigned int k = 0; k < dim; ++k)
+          point.centroid[k] = parameters.rule == Rule::nodal ?
+                                (1. + point.barycentric[k]) / (1. + dim) :
+                                point.barycentric[k];
       return points;
     }
   } // namespace

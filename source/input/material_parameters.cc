@@ -256,7 +256,7 @@ namespace Debond
       materials.everywhere.hypothesis,
       {{"plane stress", Material::Hypothesis::plane_stress},
        {"plane strain", Material::Hypothesis::plane_strain}},
-      "How the plane body represents a solid one; not used in 3D");
+      "How the plane body represents a solid one; not used in 3D and with Symmetry = axis");
   }
 
 

@@ -331,18 +331,12 @@ namespace Debond
     {
       if (p.symmetry == Symmetry::none)
         return;
-      refuse(
-        {{p.dimension != 2, "Dimension", "Symmetry = axis needs 2"},
-         {table.is_set("Material/Hypothesis") &&
-            p.materials.everywhere.hypothesis ==
-              Material::Hypothesis::plane_stress,
-          "Material/Hypothesis",
-          "a body of revolution has strains around its axis: leave it out"},
-         {p.certificate.kind != CertificateKind::none,
-          "Certificate/Kind",
-          "is for bodies without an axis"}},
-        {"Symmetry"},
-        table);
+      refuse({{p.dimension != 2, "Dimension", "Symmetry = axis needs 2"},
+              {p.certificate.kind != CertificateKind::none,
+               "Certificate/Kind",
+               "is for bodies without an axis"}},
+             {"Symmetry"},
+             table);
       p.materials.everywhere.hypothesis = Material::Hypothesis::plane_strain;
     }
 

@@ -48,7 +48,7 @@ namespace Debond
 
       /// Where a linear density of the measure is taken: of a vertex at the
       /// centroid of its basis function, else at the point.
-      std::array<double, dim> centroid = barycentric;
+      std::array<double, dim> centroid;
     };
 
     /// The trace on a face: its coefficients, see bernstein().
