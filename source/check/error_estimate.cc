@@ -483,7 +483,10 @@ namespace Debond
         const Face      face    = face_of(cell, f);
         const DoneCell &here    = cells[face.cell];
         const double    measure = face.area.norm();
-        if (measure == 0.) // on the axis
+        // The axis is no boundary.
+        if (symmetry == Symmetry::axis &&
+            measure < Tolerance::rounding_of_data *
+                        std::pow(cell->face(f)->measure(), 2))
           return;
         const dealii::Tensor<1, dim> normal = face.area / measure;
         on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
