@@ -113,23 +113,6 @@ namespace Debond
 
 
 
-    /// The middle of a cell, and of degree 2, where stresses are linear, its
-    /// vertices.
-    template <int dim>
-    std::vector<dealii::Point<dim>>
-    stress_points(const unsigned int degree)
-    {
-      std::vector<dealii::Point<dim>> points =
-        dealii::QGaussSimplex<dim>(1).get_points();
-      const auto cell = dealii::ReferenceCells::get_simplex<dim>();
-      if (degree == 2)
-        for (const unsigned int v : cell.vertex_indices())
-          points.push_back(cell.template vertex<dim>(v));
-      return points;
-    }
-
-
-
     /// The tractions that do not fit, cell by cell.
     template <int dim>
     class Residuals
@@ -153,7 +136,7 @@ namespace Debond
         , at_points(of.problem.fields(),
                     displacement,
                     factors,
-                    stress_points<dim>(degree))
+                    strain_rule<dim>(degree))
         , fe(1)
         , at_loads(fe, dealii::QGaussSimplex<dim>(2), Symmetry::none)
         , on_face(of.problem.unknowns().mapping(),
@@ -267,13 +250,18 @@ namespace Debond
         const Stress3 &of_heat = of.problem.fields().thermal_stress(cell);
         const double   mean =
           std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
-        const Stress3 in_middle = at_points.stress(0);
+        Stress3      in_middle;
+        const double n_points = at_points.values().get_quadrature().size();
+        for (const unsigned int q : of_cell.quadrature_point_indices())
+          in_middle += 1. / n_points * at_points.stress(q);
         for (unsigned int v = 0; v < n_stresses; ++v)
           {
-            const Stress3 stress  = degree == 2 ?
-                                      at_points.stress(1 + v) :
-                                      in_middle - (heat[v] - mean) * of_heat;
-            const double  thermal = heat[v] * trace(of_heat);
+            const Stress3 stress =
+              degree == 2 ?
+                in_middle + (at_points.stress(v) - in_middle) /
+                              (1. - (dim + 1) * near_vertex<dim, double>()) :
+                in_middle - (heat[v] - mean) * of_heat;
+            const double thermal = heat[v] * trace(of_heat);
             stresses.push_back(
               {resized<dim>(stress),
                material.orthotropy ?
@@ -297,7 +285,7 @@ namespace Debond
         if (degree == 2)
           {
             parts[cell->active_cell_index()] =
-              fall_inside(of_cell, force, cells.back().yield);
+              fall_inside(of_cell, force, cells.back().yield) / around;
             force = 0.;
           }
 
@@ -649,7 +637,7 @@ namespace Debond
       const double                   largest_s;
       const unsigned int             n_stresses; ///< that differ in a cell
       const DofVector                displacement;
-      CellStresses<dim>              at_points; ///< stress_points()
+      CellStresses<dim>              at_points; ///< of strain_rule()
       const dealii::FE_SimplexP<dim> fe;
       SimplexValues<dim>             at_loads;
       dealii::FEFaceValues<dim>      on_face;

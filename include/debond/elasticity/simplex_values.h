@@ -8,7 +8,6 @@
 #include <deal.II/fe/fe.h>
 #include <deal.II/grid/tria_accessor.h>
 
-#include <debond/base/tolerances.h>
 #include <debond/mesh/symmetry.h>
 
 #include <array>
@@ -102,16 +101,11 @@ namespace Debond
     }
 
     /// The strain u_r / r around the axis that the radial component of a node
-    /// makes, on the axis, where u_r is zero, its limit; zero without an axis.
+    /// makes; zero without an axis. On the axis it is not finite.
     double
     hoop_strain(const unsigned int node, const unsigned int q) const
     {
-      if (!has_axis())
-        return 0.;
-      const double radius = quadrature_point(q)[0];
-      return radius * radius > Tolerance::rounding_of_data * jacobian ?
-               shape_value(node, q) / radius :
-               shape_grad(node, q)[0];
+      return has_axis() ? shape_value(node, q) / quadrature_point(q)[0] : 0.;
     }
 
     double
