@@ -6,7 +6,6 @@
 #include <boost/accumulators/statistics/stats.hpp>
 #include <boost/accumulators/statistics/sum_kahan.hpp>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -153,22 +152,13 @@ namespace Debond
   {
     if (temperature_changes.empty())
       return 0.;
-    if (elastic_unknowns.degree() == 1)
-      return temperature_changes[cell->active_cell_index()];
-    // The linear function that has these values at the points, where the other
-    // barycentric coordinates are small.
-    std::array<double, dim + 1> barycentric;
-    barycentric[0] = 1.;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        barycentric[d + 1] = unit_point[d];
-        barycentric[0] -= unit_point[d];
-      }
-    const double small = near_vertex<dim, double>();
-    double       sum   = 0.;
-    for (unsigned int q = 0; q <= dim; ++q)
-      sum += (barycentric[q] - small) / (1. - (dim + 1) * small) *
-             temperature_changes[(dim + 1) * cell->active_cell_index() + q];
+    const std::vector<double> functions =
+      strain_functions<dim>(elastic_unknowns.degree(), unit_point);
+    double sum = 0.;
+    for (unsigned int q = 0; q < functions.size(); ++q)
+      sum +=
+        functions[q] *
+        temperature_changes[functions.size() * cell->active_cell_index() + q];
     return sum;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/simplex_values.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Debond
@@ -20,6 +21,18 @@ namespace Debond
           shape_values.push_back(element.shape_value(k, point));
           reference_gradients.push_back(element.shape_grad(k, point));
         }
+    if (!has_axis())
+      return;
+    strain_points = strain_rule<dim>(element.degree).get_points();
+    hoop_strains.resize(gradients.size());
+    for (const dealii::Point<dim> &point : strain_points)
+      {
+        strain_values.emplace_back();
+        for (unsigned int k = 0; k < nodes; ++k)
+          strain_values.back().push_back(element.shape_value(k, point));
+      }
+    for (const dealii::Point<dim> &point : rule.get_points())
+      functions.push_back(strain_functions<dim>(element.degree, point));
   }
 
 
@@ -42,6 +55,14 @@ namespace Debond
       }
     for (unsigned int i = 0; i < gradients.size(); ++i)
       gradients[i] = reference_gradients[i] * inverse;
+    std::fill(hoop_strains.begin(), hoop_strains.end(), 0.);
+    for (unsigned int p = 0; p < strain_points.size(); ++p)
+      {
+        const double radius = (origin + strain_points[p] * edges)[0];
+        for (unsigned int i = 0; i < hoop_strains.size(); ++i)
+          hoop_strains[i] +=
+            functions[i / nodes][p] * strain_values[p][i % nodes] / radius;
+      }
   }
 
 

@@ -64,6 +64,11 @@ namespace Debond
               {
                 dealii::Tensor<1, dim> normal =
                   field_vector(*field->second.value, middle);
+                double largest = 0.;
+                for (unsigned int d = 0; d < dim; ++d)
+                  largest = std::max(largest, std::abs(normal[d]));
+                if (largest > 0.)
+                  normal /= largest;
                 if (!(normal * face.normal >
                       Tolerance::same_normal * normal.norm()))
                   throw std::invalid_argument(

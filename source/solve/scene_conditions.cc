@@ -193,7 +193,9 @@ namespace Debond
                          auto                                     &fields) {
       if (!text.empty())
         for (const dealii::types::boundary_id id : conditions.contact)
-          fields[id] = {"", make_function<dim>(text, constants, n_components)};
+          if (n_components == 1 || conditions.high_sides.count(id) == 0)
+            fields[id] = {"",
+                          make_function<dim>(text, constants, n_components)};
       for_contact_boundaries(given,
                              entries_of(entry, own),
                              conditions,

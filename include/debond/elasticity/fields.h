@@ -136,37 +136,6 @@ namespace Debond
 
 
 
-  /// All barycentric coordinates but one of a point of strain_rule() of degree
-  /// 2: each of the points is next to a vertex, which has the other one.
-  template <int dim, typename Number>
-  Number
-  near_vertex()
-  {
-    return dim == 2 ? Number(1) / 6 : (5 - std::sqrt(Number(5))) / 20;
-  }
-
-
-
-  /// The rule that integrates products of two strains: one point of degree 1,
-  /// dim + 1 points of degree 2, in the order of the vertices; QGaussSimplex
-  /// would have more.
-  template <int dim>
-  dealii::Quadrature<dim>
-  strain_rule(const unsigned int degree)
-  {
-    if (degree == 1)
-      return dealii::QGaussSimplex<dim>(1);
-    const double                    small = near_vertex<dim, double>();
-    std::vector<dealii::Point<dim>> points(dim + 1);
-    for (unsigned int q = 0; q <= dim; ++q)
-      for (unsigned int d = 0; d < dim; ++d)
-        points[q][d] = q == d + 1 ? 1. - dim * small : small;
-    return {points,
-            std::vector<double>(dim + 1, 1. / (dim == 2 ? 2 * 3 : 6 * 4))};
-  }
-
-
-
   /// Gradients and stresses of a displacement in one cell after the other, at
   /// the points of a rule. Where that is one point they are means, of degree 1
   /// too where thermal stresses are.

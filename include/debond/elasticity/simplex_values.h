@@ -2,7 +2,7 @@
 #ifndef debond_elasticity_simplex_values_h
 #define debond_elasticity_simplex_values_h
 
-#include <deal.II/base/quadrature.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/std_cxx20/iota_view.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe.h>
@@ -11,10 +11,66 @@
 #include <debond/mesh/symmetry.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace Debond
 {
+  /// All barycentric coordinates but one of a point of strain_rule() of degree
+  /// 2: each of the points is next to a vertex, which has the other one.
+  template <int dim, typename Number>
+  Number
+  near_vertex()
+  {
+    return dim == 2 ? Number(1) / 6 : (5 - std::sqrt(Number(5))) / 20;
+  }
+
+
+
+  /// The rule that integrates products of two strains: one point of degree 1,
+  /// dim + 1 points of degree 2, in the order of the vertices; QGaussSimplex
+  /// would have more.
+  template <int dim>
+  dealii::Quadrature<dim>
+  strain_rule(const unsigned int degree)
+  {
+    if (degree == 1)
+      return dealii::QGaussSimplex<dim>(1);
+    const double                    small = near_vertex<dim, double>();
+    std::vector<dealii::Point<dim>> points(dim + 1);
+    for (unsigned int q = 0; q <= dim; ++q)
+      for (unsigned int d = 0; d < dim; ++d)
+        points[q][d] = q == d + 1 ? 1. - dim * small : small;
+    return {points,
+            std::vector<double>(dim + 1, 1. / (dim == 2 ? 2 * 3 : 6 * 4))};
+  }
+
+
+
+  /// The values at a point of the reference cell of the functions through which
+  /// values at the points of strain_rule() make a function on the cell: one
+  /// that is constant, of degree 2 linear.
+  template <int dim>
+  std::vector<double>
+  strain_functions(const unsigned int        degree,
+                   const dealii::Point<dim> &unit_point)
+  {
+    if (degree == 1)
+      return {1.};
+    const double        small = near_vertex<dim, double>();
+    std::vector<double> barycentric(1, 1.);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        barycentric.push_back(unit_point[d]);
+        barycentric[0] -= unit_point[d];
+      }
+    for (double &coordinate : barycentric)
+      coordinate = (coordinate - small) / (1. - (dim + 1) * small);
+    return barycentric;
+  }
+
+
+
   /// This is dealii::FEValues for a scalar element on simplices with straight
   /// sides: all follows from the gradients of the barycentric coordinates,
   /// which takes much less time than a mapping that may be curved. Of a body of
@@ -101,11 +157,12 @@ namespace Debond
     }
 
     /// The strain u_r / r around the axis that the radial component of a node
-    /// makes; zero without an axis. On the axis it is not finite.
+    /// makes, by strain_functions() through its values at the points where the
+    /// energy is; zero without an axis.
     double
     hoop_strain(const unsigned int node, const unsigned int q) const
     {
-      return has_axis() ? shape_value(node, q) / quadrature_point(q)[0] : 0.;
+      return has_axis() ? hoop_strains[q * nodes + node] : 0.;
     }
 
     double
@@ -143,12 +200,19 @@ namespace Debond
     std::vector<double>                 shape_values;
     std::vector<dealii::Tensor<1, dim>> reference_gradients;
 
+    /// With an axis: the points of strain_rule(), and for each of them the
+    /// values of the element there and of strain_functions() at the points of
+    /// the rule.
+    std::vector<dealii::Point<dim>>  strain_points;
+    std::vector<std::vector<double>> strain_values, functions;
+
     // Of the cell.
     dealii::Point<dim>                          origin;
     dealii::Tensor<2, dim>                      edges; ///< from the origin
     double                                      jacobian = 0.;
     std::array<dealii::Tensor<1, dim>, dim + 1> barycentric;
     std::vector<dealii::Tensor<1, dim>>         gradients;
+    std::vector<double>                         hoop_strains;
   };
 } // namespace Debond
 
