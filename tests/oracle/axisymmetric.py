@@ -384,6 +384,19 @@ class Body:
                                        for q in (0., 1., .2, .4, .6, .8) for _ in range(3)])
         return [s for s in found if s is not None]
 
+    def largest_von_mises(self, u):
+        """Of the mean stresses of cells."""
+        (C, expansion), largest = self.material(), 0.
+        heat = field(self.of.get("Loads/Temperature change", "0"))
+        for cell in self.cells:
+            of_cell, stress = u.reshape(-1, 2)[cell].ravel(), np.zeros(4)
+            for weight, l in STRAIN[self.degree]:
+                B, _, p, _ = self.at_point(cell, l)
+                stress += weight * C @ (B @ of_cell - expansion * heat(p))
+            rest = stress[:3] - stress[:3].mean()
+            largest = max(largest, np.sqrt(1.5 * (rest @ rest + 2 * stress[3]**2)))
+        return largest
+
     def mean(self, u, name):
         return sum(w * phi @ u.reshape(-1, 2)[nodes] for nodes, phi, w, _, _ in self.on(
             name)) / self.area(name)

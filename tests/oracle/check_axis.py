@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_axis.py DEBOND [COUNT [FIRST]]: bodies of revolution and foundations with a direction,
 beside finite elements of axisymmetric.py, which share nothing with the program: random boxes and
-frustums (S, g, J, law, displacements, forces, words, proofs), paths and arcs among all stationary
-states, domes on a plane, bodies that are glued, refined meshes; and closed forms."""
+frustums (S, g, J, law, displacements, forces, stresses, words, proofs), paths and arcs among all
+stationary states, domes on a plane, bodies that are glued, refined meshes; and closed forms."""
 import itertools
 import pathlib
 import re
@@ -225,6 +225,7 @@ def judge(settings, mesh, result, draw):
         for x, y in list(zip(result["probes"].get("force_" + name, []), sum(
                 forces[v] for v in nodes)))[at_axis:]:
             close("force " + name, x, y, 1e-8 * loose, scale)
+    close("stress", result["largest_von_mises"], body.largest_von_mises(u), 1e-6 * loose)
     close("applied force", result["applied_force"][1], body.f[1::2].sum(), 1e-9, scale)
     close("reactions", result["clamped_reaction"][1] + result["contact_reaction"][1],
           forces[:, 1].sum(), 1e-8 * loose, scale)
@@ -519,7 +520,7 @@ def check_cylinder():
 
 def check_units():
     """The estimated error in other units of length."""
-    for more in ([],):
+    for more in ([], DEGREE_2):
         errors = [scenes.solve(
             *AXIS, *ISOTROPIC, *more, f"Mesh/Lengths={L}, {L}", "Mesh/Cells=6, 6", SUPPORTS +
             "Clamped boundaries=bottom", SUPPORTS + "Contact boundary=", "Loads/Traction top=0; 1")[
