@@ -226,13 +226,14 @@ namespace Debond
         const double              mu       = material.shear_modulus();
         const double              lambda = material.template lame_lambda<dim>();
         const bool                has_axis = symmetry == Symmetry::axis;
-        const double around         = circumference(symmetry, cell->center());
+        const double              around =
+          has_axis ? circumference(symmetry, cell->center()) : 1.;
         const int    n_traced       = has_axis ? 3 : dim;
         const double part_of_lambda = lambda / (2. * mu + n_traced * lambda);
         cells.push_back(
           {lambda + 2. * mu,
            material.orthotropy ?
-             orthotropic_yield(material.template elasticity_tensor<dim>()) :
+             orthotropic_yield(of.problem.fields().solid_tensor(cell)) :
              1. / mu * dealii::unit_symmetric_tensor<dim>(),
            around * bubble_energy(of_cell),
            {}});
@@ -354,12 +355,12 @@ namespace Debond
         unsigned int opposite = dim * (dim + 1) / 2;
         for (const unsigned int vertex : in_cell)
           opposite -= vertex;
-        dealii::Point<dim> middle;
-        for (const unsigned int vertex : in_cell)
-          middle += cell->vertex(vertex) / static_cast<double>(dim);
+        const double around =
+          symmetry == Symmetry::axis ?
+            circumference(symmetry, cell->face(f)->center()) :
+            1.;
         return {cell->active_cell_index(),
-                -dim * circumference(symmetry, middle) *
-                  at_points.values().measure() *
+                -dim * around * at_points.values().measure() *
                   at_points.values().barycentric_gradient(opposite),
                 in_cell};
       }
@@ -367,7 +368,7 @@ namespace Debond
       /// The mean over all directions of a gradient, times what makes it 1 /
       /// mu of an isotropic material with a Poisson ratio of 0.3.
       static dealii::SymmetricTensor<2, dim>
-      orthotropic_yield(const dealii::SymmetricTensor<4, dim> &stiffness)
+      orthotropic_yield(const dealii::SymmetricTensor<4, 3> &stiffness)
       {
         dealii::SymmetricTensor<2, dim> mean;
         for (unsigned int i = 0; i < dim; ++i)

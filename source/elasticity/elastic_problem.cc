@@ -124,9 +124,13 @@ namespace Debond
                 const dealii::SymmetricTensor<2, 3> stress =
                   values.JxW(q) *
                   (stiffness * values.strain(j / dim, j % dim, q));
-                for (unsigned int i = 0; i < cell_matrix.m(); ++i)
-                  cell_matrix(i, j) +=
-                    values.force(stress, i / dim, q)[i % dim];
+                for (unsigned int k = 0; k < values.n_nodes(); ++k)
+                  {
+                    const dealii::Tensor<1, dim> force =
+                      values.force(stress, k, q);
+                    for (unsigned int c = 0; c < dim; ++c)
+                      cell_matrix(dim * k + c, j) += force[c];
+                  }
               }
           return;
         }

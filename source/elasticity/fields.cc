@@ -49,6 +49,8 @@ namespace Debond
     , materials(materials)
     , stiffness(materials.transformed(
         [](const Material &material) { return material.solid_tensor<dim>(); }))
+    , stiffness_norms(
+        stiffness.transformed([](const auto &tensor) { return tensor.norm(); }))
     , thermal_stresses(materials.transformed([](const Material &material) {
       return material.thermal_stress<dim>();
     }))
@@ -128,7 +130,7 @@ namespace Debond
                        size_gradient +=
                          sizes(dofs[i]) * size_of_strain(i / dim);
                      const double size_stress = cell.values().JxW(q) *
-                                                cell.solid_tensor().norm() *
+                                                cell.stiffness_norm() *
                                                 size_gradient;
                      for (unsigned int i = 0; i < dofs.size(); ++i)
                        rounding(dofs[i]) +=

@@ -195,14 +195,23 @@ namespace Debond
     // modulus.
     if (cell.stiffness != nullptr)
       {
-        Stress sigma;
-        for (unsigned int i = 0; i < 3; ++i)
-          for (unsigned int j = 0; j < 3; ++j)
-            for (unsigned int k = 0; k < 3; ++k)
-              for (unsigned int l = 0; l < 3; ++l)
-                sigma[i][j] +=
-                  static_cast<long double>((*cell.stiffness)[i][j][k][l]) *
-                  gradient[k][l];
+        Stress      sigma;
+        const auto &C = *cell.stiffness;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              for (unsigned int k = 0; k < dim; ++k)
+                for (unsigned int l = 0; l < dim; ++l)
+                  sigma[i][j] +=
+                    static_cast<long double>(C[i][j][k][l]) * gradient[k][l];
+              if (has_axis())
+                {
+                  sigma[i][j] += C[i][j][2][2] * gradient[2][2];
+                  sigma[2][2] += C[2][2][i][j] * gradient[i][j];
+                }
+            }
+        if (has_axis())
+          sigma[2][2] += C[2][2][2][2] * gradient[2][2];
         return sigma;
       }
     Stress            sigma;

@@ -77,12 +77,12 @@ namespace Debond
         }
       double largest = 0.;
       for (const auto &cell : owned_cells(unknowns.dof_handler()))
-        {
+        if (const double of_cell = at_edge[cell->id().get_coarse_cell_id()];
+            of_cell > 0.)
           largest = std::max(
             largest,
-            at_edge[cell->id().get_coarse_cell_id()] /
+            of_cell /
               problem.fields().material(cell).template plane_modulus<3>());
-        }
       return dealii::Utilities::MPI::max(largest, unknowns.communicator());
     }
   } // namespace

@@ -55,6 +55,9 @@ namespace Debond
                     face->measure() * circumference(symmetry, face->center());
             measure =
               dealii::Utilities::MPI::sum(measure, mesh.get_communicator());
+            if (measure == 0.)
+              throw EntryError(load.entry(),
+                               "the axis has no area that could bear a force");
             std::vector<double> density(dim);
             for (unsigned int d = 0; d < dim; ++d)
               density[d] = value->value(dealii::Point<dim>(), d) / measure;

@@ -75,6 +75,12 @@ namespace Debond
       return stiffness(cell->material_id());
     }
 
+    double
+    stiffness_norm(const Cell &cell) const
+    {
+      return stiffness_norms(cell->material_id());
+    }
+
     /// Material::thermal_stress().
     const dealii::SymmetricTensor<2, 3> &
     thermal_stress(const Cell &cell) const
@@ -128,6 +134,7 @@ namespace Debond
     const ElasticUnknowns<dim>             &elastic_unknowns;
     ByRegion<Material>                      materials;
     ByRegion<dealii::SymmetricTensor<4, 3>> stiffness;
+    ByRegion<double>                        stiffness_norms;
     ByRegion<dealii::SymmetricTensor<2, 3>> thermal_stresses;
     DofVector                               live_forces;
     DofVector                               dead_forces; ///< or empty
@@ -160,6 +167,12 @@ namespace Debond
     solid_tensor() const
     {
       return fields.solid_tensor(cell);
+    }
+
+    double
+    stiffness_norm() const
+    {
+      return fields.stiffness_norm(cell);
     }
 
     /// The shape functions in the cell, of each component.
