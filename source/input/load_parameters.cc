@@ -106,7 +106,7 @@ namespace Debond
       "Loads/Force",
       loads.forces,
       expression,
-      "The total force on the boundary of this name, spread evenly over it: an expression without x, y and z for each component. In 2D per thickness",
+      "The total force on the boundary of this name, spread evenly over it: an expression without x, y and z for each component. Of a plane body per thickness",
       "force, in 2D per length");
     table.bind(
       "Loads/Temperature change",

@@ -42,12 +42,9 @@ namespace Debond
           make_function<dim>(load.expression,
                              parameters.constants,
                              load.n_components(dim));
-        if (load.kind == "Force")
+        double measure = 0.;
+        if (load.kind == "Force" || symmetry == Symmetry::axis)
           {
-            // A total force is spread evenly over the faces that this mesh has,
-            // so that its resultant is the same on all meshes, also of a curved
-            // boundary.
-            double measure = 0.;
             for (const auto &cell : owned_cells(mesh))
               for (const auto &face : cell->face_iterators())
                 if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
@@ -57,7 +54,13 @@ namespace Debond
               dealii::Utilities::MPI::sum(measure, mesh.get_communicator());
             if (measure == 0.)
               throw EntryError(load.entry(),
-                               "the axis has no area that could bear a force");
+                               "the axis has no area that could bear a load");
+          }
+        if (load.kind == "Force")
+          {
+            // A total force is spread evenly over the faces that this mesh has,
+            // so that its resultant is the same on all meshes, also of a curved
+            // boundary.
             std::vector<double> density(dim);
             for (unsigned int d = 0; d < dim; ++d)
               density[d] = value->value(dealii::Point<dim>(), d) / measure;
