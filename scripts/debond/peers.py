@@ -157,6 +157,44 @@ def petsc(problem, start, lower, upper, kind):
     return x.getArray(), "converged" if solver.getConvergedReason() > 0 else "not converged"
 
 
+def getfems(problem, start, lower, upper):
+    """What the solver of GetFEM ends at, by its contact with multipliers, and what it
+    says. Its mesh has a cell of length 1 for each bond; as S is full, so is the solver
+    of linear equations."""
+    import getfem
+
+    n, d, openings = len(start), problem.discrete, problem.openings
+    pieces = [(f"(Heaviside(t-{a})-Heaviside(t-{b}))", f"({traction}+({slope})*(t-{a}))",
+               f"({slope})") for a, b, traction, slope in zip(
+                   openings, numpy.append(openings[1:], 1e20), problem.tractions,
+                   problem.slopes)]
+    getfem.util_trace_level(0)
+    getfem.asm_define_function(
+        "traction", 1, "+".join(f"{inside}*{line}" for inside, line, _ in pieces),
+        "+".join(f"{inside}*{slope}" for inside, _, slope in pieces))
+    mesh = getfem.Mesh("cartesian", numpy.arange(n + 1.))
+    cells = getfem.MeshFem(mesh, 1)
+    cells.set_classical_fem(0)
+    S = getfem.Spmat("empty", n, n)
+    S.assign(range(n), range(n), d.S)
+    model = getfem.Model("real")
+    model.add_fem_variable("s", cells)
+    model.set_variable("s", start)
+    model.add_initialized_fem_data("weights", cells, d.weights)
+    model.add_explicit_matrix("s", "s", S)
+    model.add_explicit_rhs("s", d.g)
+    model.add_nonlinear_term(getfem.MeshIm(mesh, getfem.Integ("IM_GAUSS1D(1)")),
+                             "-weights*traction(-s)*Test_s")
+    model.add_variable("multipliers", n)
+    model.add_initialized_data("augmentation", d.S.diagonal().max())
+    model.add_initialized_data("upper", upper)
+    model.add_basic_contact_brick("s", "multipliers", "augmentation",
+                                  getfem.Spmat("identity", n), "upper")
+    _, converged = model.solve("lsolver", "dense_lu")
+    getfem.asm_undefine_function("traction")
+    return model.variable("s"), "converged" if converged else "not converged"
+
+
 def scipys(problem, start, lower, upper, kind):
     """What an optimiser of scipy ends at, and what it says."""
     found = minimize(problem.J, start, method=kind, bounds=list(zip(lower, upper)), **(
@@ -174,6 +212,7 @@ def compare(problem, lifted):
             *((f"PETSc {title}", lambda *args, kind=kind: petsc(*args, kind))
               for title, kind in (("SNES VI", "vinewtonrsls"), ("TAO bnls", "bnls"),
                                   ("TAO blmvm", "blmvm"))),
+            ("GetFEM", getfems),
             ("Ipopt", ipopt)):
         begin = time.time()
         x, said = solve(problem, start, lower, upper)

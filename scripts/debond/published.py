@@ -379,8 +379,8 @@ def main():
         "published, and prints what they state beside what it finds.")
     parser.add_argument("problems", metavar="WORD", nargs="*",
                         help="those whose title has one of these words; all if none")
-    parser.add_argument("--others", action="store_true", help="optimisers of scipy, PETSc and "
-                        "Ipopt as well")
+    parser.add_argument("--others", action="store_true", help="optimisers of scipy, PETSc, "
+                        "GetFEM and Ipopt as well")
     parser.add_argument("--doc", action="store_true",
                         help="write all tables and the picture to doc/")
     parser.add_argument("--debond", help="a program that is built already")
@@ -397,8 +397,8 @@ def main():
     if options.doc:
         draw()
     if options.others or options.doc:
-        subprocess.run([f"{SOURCE}/scripts/install", "python3-petsc4py", "coinor-libipopt1v5"],
-                       check=True)
+        subprocess.run([f"{SOURCE}/scripts/install", "python3-petsc4py", "python3-getfem",
+                        "coinor-libipopt1v5"], check=True)
         tables["others"] = (["problem", "optimiser", "J", "above the least", "says", "s"], [
             [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
             for row in others()])
