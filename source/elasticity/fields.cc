@@ -123,7 +123,7 @@ namespace Debond
                      const auto &dofs           = cell.dofs();
                      const auto  size_of_strain = [&](const unsigned int node) {
                        return cell.values().shape_grad(node, q).norm() +
-                              cell.values().hoop_strain(node, q);
+                              std::abs(cell.values().hoop_strain(node, q));
                      };
                      double size_gradient = 0.;
                      for (unsigned int i = 0; i < dofs.size(); ++i)

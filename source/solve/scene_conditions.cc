@@ -191,6 +191,8 @@ namespace Debond
                          const std::map<std::string, std::string> &own,
                          const unsigned int                        n_components,
                          auto                                     &fields) {
+      // Cuts have no foundation whose direction an entry without a name could
+      // mean, but gaps.
       if (!text.empty())
         for (const dealii::types::boundary_id id : conditions.contact)
           if (n_components == 1 || conditions.high_sides.count(id) == 0)
