@@ -33,6 +33,8 @@ HELD_BY_BONDS = ["Parts/low=left: y < 0.02", "Boundary conditions/Clamped bounda
                  "Loads/Traction top=0; if(x > 0.2, 0.05, 0.02)"]
 PLIES = ["Material/Young moduli=69, 20, 20", "Material/Poisson ratios=0.3, 0.3, 0.3",
          "Material/Shear moduli=10, 10, 8", "Material/Axis angle=25"]
+AXIS = ["Symmetry=axis", "Boundary conditions/Clamped boundaries=right",
+        "Loads/Temperature change=100*x", "Material/Thermal expansion=1e-5"]
 
 # Of each a name, a scene and what differs in it.
 SCENES = [
@@ -48,6 +50,11 @@ SCENES = [
                           "Load path/Bonds heal=false"]),
     ("joint, refined", "benchmark-40x4",
      MM + JOINT + ["Mesh/Cells=10, 4", "Accuracy/Maximum unknowns=2000"]),
+    ("axis by levels", "benchmark-40x4", MG + AXIS),
+    ("direction, axis, degree 2, refined", "benchmark-40x4",
+     MM + AXIS + ["Mesh/Cells=20, 4", "Mesh/Degree=2", "Contact law/Quadrature=gauss 4",
+                  "Boundary conditions/Foundation normal=0.2; -1",
+                  "Accuracy/Maximum unknowns=1500"]),
     ("orthotropic", "benchmark-40x4", MM + PLIES),
     ("orthotropic bar by levels", "benchmark-40x4", MG + BAR + PLIES),
     ("proof", "benchmark-40x4", MM + ["Solver/Prove=true", "Solver/Search=full"]),
