@@ -325,7 +325,8 @@ namespace Debond
 
 
 
-    /// Refuses what a body of revolution cannot have.
+    /// Refuses what a body of revolution cannot have. Its material is that of
+    /// the solid, as in plane strain.
     void
     check_symmetry(Parameters &p, ParameterTable &table)
     {

@@ -109,6 +109,8 @@ namespace Debond
           const std::vector<Gradient> gradients = gradients_at(cell, q);
           Stress weighted = cell.volume / reference_gradients.size() *
                             stress(cell, q, gradients, displacement);
+          // What pulls around the axis acts on all nodes, for displacements
+          // that neighbours have in common strain it as well.
           if (has_axis())
             {
               weighted *= 2.L * dealii::numbers::PI * radius(cell, q);

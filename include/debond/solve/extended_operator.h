@@ -72,6 +72,7 @@ namespace Debond
     std::vector<Gradient>
     gradients_at(const Cell &cell, const unsigned int point) const;
 
+    /// The distance of a point of the rule from the axis.
     long double
     radius(const Cell &cell, const unsigned int point) const;
 
