@@ -36,6 +36,73 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// How far a point at @p jump is from the end of its piece along @p way, a
+    /// jump for each unit of it: infinite if it does not come there.
+    template <int dim>
+    double
+    way_to_end(const AdhesiveLaw       &law,
+               const ContactPoint<dim> &point,
+               const Jump<dim>         &jump,
+               const double             stretch,
+               const double             reached,
+               const Jump<dim>         &way)
+    {
+      // Points without bonds have no kink.
+      if (point.bonds.energy == 0.)
+        return infinity;
+      const PiecewiseEnergy::Piece piece =
+        law.pieces().piece_at(stretch, reached);
+      if (!point.shears())
+        return piece.way_to_end(stretch, way.normal / point.bonds.stretch);
+      // The square of the opening, A x^2 + 2 B x + C.
+      const double shear = point.bonds.shear;
+      const double A     = way.product(way, shear);
+      const double B     = way.product(jump, shear);
+      const double C     = jump.product(jump, shear);
+      double       first = infinity;
+      // The end beyond is come to sooner or later, the one towards rest if the
+      // least opening on the line is below it.
+      const auto square_at = [&](const double end) {
+        return end * end * point.bonds.stretch * point.bonds.stretch;
+      };
+      if (std::isfinite(piece.lower) && A > 0.)
+        {
+          const double rest = std::max(0., square_at(piece.lower) - C);
+          const double root = std::sqrt(B * B + A * rest);
+          first             = B > 0. ? rest / (B + root) : (root - B) / A;
+        }
+      if (piece.upper < 0. && B < 0.)
+        {
+          const double rest = std::max(0., C - square_at(piece.upper));
+          if (B * B >= A * rest)
+            first = std::min(first, rest / (std::sqrt(B * B - A * rest) - B));
+        }
+      return first;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BondMemory
+  AdhesionIntegral<dim>::memory_with_modes() const
+  {
+    BondMemory        memory = broken;
+    const std::size_t n      = contact_points.list().size();
+    if (memory.taken.empty())
+      {
+        memory.reached.assign(n, 0.);
+        memory.toughness.assign(n, 1.);
+        memory.mixity.assign(n, 0.);
+        memory.taken.assign(n, 0.);
+      }
+    return memory;
+  }
+
+
+
   template <int dim>
   void
   AdhesionIntegral<dim>::break_for_good(const VectorView &s)
@@ -43,16 +110,9 @@ namespace Debond
     // The memory of a point is the least stretch that it has ever had, so it
     // only falls, and a second call with the same s changes nothing. Where
     // there is no memory yet, reached is 0, which no stretch at s <= 0 exceeds.
-    BondMemory memory = broken;
-    memory.reached.clear();
     const bool has_mode = contact_points.toughness_by_mode() != nullptr;
-    if (has_mode && memory.taken.empty())
-      {
-        const std::size_t n = contact_points.list().size();
-        memory.toughness.assign(n, 1.);
-        memory.mixity.assign(n, 0.);
-        memory.taken.assign(n, 0.);
-      }
+    BondMemory memory   = has_mode ? memory_with_modes() : broken;
+    memory.reached.clear();
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       const std::size_t q   = memory.reached.size();
       const double      now = std::min(reached, stretch);
@@ -61,25 +121,69 @@ namespace Debond
         return;
       // What the bonds take in this step they take with the energy that they
       // have in it.
-      const double taken = point.weight * point.bonds.energy *
-                           (law.value(0., now) - law.value(0., reached));
-      memory.taken[q] += taken;
-      const Jump<dim> jump   = point.jump(s);
-      const double    square = jump.product(jump, point.bonds.shear);
-      if (!(square > 0.))
-        return;
-      memory.mixity[q] =
-        point.bonds.shear * jump.tangential.norm_square() / square;
-      if (taken > 0.)
-        {
-          const double before = memory.toughness[q];
-          const double after =
-            (*contact_points.toughness_by_mode())(memory.mixity[q],
-                                                  point.bonds.energy / before);
-          memory.lag += std::abs(after / before - 1.) * taken;
-        }
+      memory.taken[q] += point.weight * point.bonds.energy *
+                         (law.value(0., now) - law.value(0., reached));
+      // The mode of the next step, unless that shows another one. Bonds that
+      // bear nothing yet have none: it would be that of rounding.
+      if (bears(stretch))
+        memory.mixity[q] = point.jump(s).part_of_shear(point.bonds.shear);
     });
     set_memory(memory);
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::adapt_mode(const AdhesionIntegral &last,
+                                    const VectorView       &last_s,
+                                    const VectorView       &s)
+  {
+    const auto *const toughness = contact_points.toughness_by_mode();
+    if (toughness == nullptr)
+      return 0.;
+    BondMemory  memory     = memory_with_modes();
+    const auto *last_point = last.points().list().data();
+    double      lag = 0., without_mode = 0., all = 0.;
+    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      const std::size_t q     = last_point - last.points().list().data();
+      const Jump<dim>   start = last_point++->jump(last_s);
+      // What has a mode keeps it in this step. What has none has that of the
+      // place on the straight way to here at which it begins to be damaged.
+      const bool has_mode =
+        memory.taken[q] > 0. || bears(point.stretch_at(start));
+      const Jump<dim> way = point.jump(s).moved(start, -1.);
+      const double    part =
+        has_mode ?
+             1. :
+             std::min(1.,
+                   way_to_end(
+                     law, point, start, point.stretch_at(start), reached, way));
+      const double mixity =
+        start.moved(way, part).part_of_shear(point.bonds.shear);
+      if (point.bonds.energy == 0. || std::isnan(mixity))
+        return;
+      // What they take with the energy that they have, and with another one: it
+      // is reached at another opening.
+      const double before = memory.toughness[q];
+      const double after  = (*toughness)(mixity, point.bonds.energy / before);
+      const auto   taken_with = [&](const double factor) {
+        const double now =
+          std::min(reached, stretch * std::sqrt(before / factor));
+        return point.weight * point.bonds.energy * factor / before *
+               (law.value(0., now) - law.value(0., reached));
+      };
+      const double taken = taken_with(before), other = taken_with(after);
+      all += std::max(taken, other);
+      lag += std::abs(other - taken);
+      if (has_mode || std::max(taken, other) == 0.)
+        return;
+      without_mode += std::abs(other - taken);
+      memory.mixity[q] = mixity;
+    });
+    memory.lag = last.broken.lag + lag;
+    set_memory(memory);
+    return all > 0. ? without_mode / all : 0.;
   }
 
 
@@ -323,56 +427,6 @@ namespace Debond
 
 
 
-  namespace
-  {
-    /// How far a point at @p s is from the end of its piece along @p way, a
-    /// jump for each unit of it: infinite if it does not come there.
-    template <int dim>
-    double
-    way_to_end(const AdhesiveLaw       &law,
-               const ContactPoint<dim> &point,
-               const VectorView        &s,
-               const double             stretch,
-               const double             reached,
-               const Jump<dim>         &way)
-    {
-      // Points without bonds have no kink.
-      if (point.bonds.energy == 0.)
-        return infinity;
-      const PiecewiseEnergy::Piece piece =
-        law.pieces().piece_at(stretch, reached);
-      if (!point.shears())
-        return piece.way_to_end(stretch, way.normal / point.bonds.stretch);
-      const Jump<dim> jump = point.jump(s);
-      // The square of the opening, A x^2 + 2 B x + C.
-      const double shear = point.bonds.shear;
-      const double A     = way.product(way, shear);
-      const double B     = way.product(jump, shear);
-      const double C     = jump.product(jump, shear);
-      double       first = infinity;
-      // The end beyond is come to sooner or later, the one towards rest if the
-      // least opening on the line is below it.
-      const auto square_at = [&](const double end) {
-        return end * end * point.bonds.stretch * point.bonds.stretch;
-      };
-      if (std::isfinite(piece.lower) && A > 0.)
-        {
-          const double rest = std::max(0., square_at(piece.lower) - C);
-          const double root = std::sqrt(B * B + A * rest);
-          first             = B > 0. ? rest / (B + root) : (root - B) / A;
-        }
-      if (piece.upper < 0. && B < 0.)
-        {
-          const double rest = std::max(0., C - square_at(piece.upper));
-          if (B * B >= A * rest)
-            first = std::min(first, rest / (std::sqrt(B * B - A * rest) - B));
-        }
-      return first;
-    }
-  } // namespace
-
-
-
   template <int dim>
   double
   AdhesionIntegral<dim>::first_change(const VectorView &s,
@@ -387,7 +441,9 @@ namespace Debond
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       const Jump<dim> way = {point.normal_displacement(ds) - point.offset,
                              point.jump(ds).tangential - point.slip_offset};
-      first = std::min(first, way_to_end(law, point, s, stretch, reached, way));
+      first =
+        std::min(first,
+                 way_to_end(law, point, point.jump(s), stretch, reached, way));
     });
     return first;
   }
@@ -408,7 +464,9 @@ namespace Debond
                                point.normal_displacement(s),
                              to.jump(next_s).tangential -
                                point.jump(s).tangential};
-      first = std::min(first, way_to_end(law, point, s, stretch, reached, way));
+      first =
+        std::min(first,
+                 way_to_end(law, point, point.jump(s), stretch, reached, way));
     });
     return first;
   }

@@ -4,6 +4,7 @@
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_condensation.h>
+#include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/bond_change.h>
 #include <debond/solve/contact_solver.h>
 #include <debond/solve/global_branch.h>
@@ -24,6 +25,11 @@ namespace Debond
 {
   namespace
   {
+    /// How often a step is done with new modes of its bonds.
+    constexpr unsigned int most_modes = 10;
+
+
+
     /// The table of a path in the log: the factors that vary, J, a number and
     /// the state.
     template <int dim>
@@ -128,8 +134,19 @@ namespace Debond
                    nullptr)
         , condensed(solver ? solver->condensed() : nullptr)
       {
-        if (condensed != nullptr &&
-            scene.problem().unknowns().is_held_by_supports())
+        const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+        if (steps.empty())
+          {
+            progress.u.reinit(unknowns.n_dofs());
+            unknowns.contact().add(last_point(), progress.u);
+            if (unknowns.has_gap() && !parameters.bonds_heal)
+              {
+                AdhesionIntegral<dim> at_rest = bonds_before();
+                at_rest.break_for_good(last_point());
+                progress.memory = at_rest.memory();
+              }
+          }
+        if (condensed != nullptr && unknowns.is_held_by_supports())
           result.condition_estimate = condensed->condition_estimate();
         result.parts["condensation"] += timer.wall_time();
       }
@@ -306,10 +323,7 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
-        bonds.freeze_mode();
-        Progress             silent;
-        const ContactMinimum minimum =
-          solver->minimise(factors, bonds, solver_parameters, silent);
+        const ContactMinimum minimum = minimise(factors, bonds);
         if (const auto direct = factorisation_instead(
               scene, solver_parameters, choice, minimum.status))
           {
@@ -318,8 +332,7 @@ namespace Debond
             solver.reset();
             solver    = make_contact_solver(choice, scene);
             condensed = solver->condensed();
-            if (!steps.empty())
-              solver->start_from(points.back(), progress.u);
+            solver->start_from(last_point(), progress.u);
             return solve(factors, observer);
           }
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
@@ -338,6 +351,46 @@ namespace Debond
           }
         add_step(factors, minimum, bonds, observer);
         return true;
+      }
+
+      /// The minimum from the state before. The fracture energy of bonds may
+      /// depend on the mode at which they are damaged, which only the minimum
+      /// tells: it is sought again with the modes found, until they hold.
+      ContactMinimum
+      minimise(const LoadFactors factors, AdhesionIntegral<dim> &bonds)
+      {
+        const AdhesionIntegral<dim> last = bonds_before();
+        for (unsigned int k = 1;; ++k)
+          {
+            Progress silent;
+            bonds.freeze_mode();
+            const ContactMinimum minimum =
+              solver->minimise(factors, bonds, solver_parameters, silent);
+            if (!can_be_verified(minimum.status) ||
+                bonds.adapt_mode(last, last_point(), solver->point()) <=
+                  Tolerance::lag_of_mode ||
+                k == most_modes)
+              return minimum;
+            solver->start_from(last_point(), progress.u);
+          }
+      }
+
+      Eigen::VectorXd
+      last_point() const
+      {
+        return points.empty() ? scene.problem().unknowns().contact().at_rest() :
+                                points.back();
+      }
+
+      /// The bonds of the last step. To begin with the body is at rest, where
+      /// gaps may stretch them beyond what they return from.
+      AdhesionIntegral<dim>
+      bonds_before() const
+      {
+        AdhesionIntegral<dim> bonds = scene.adhesion().at(
+          steps.empty() ? 0. : steps.back().factors().displacements);
+        bonds.set_memory(progress.memory);
+        return bonds;
       }
 
       /// The step to a minimum. Bonds that do not heal break where it is.

@@ -28,10 +28,6 @@ namespace Debond
     /// normals, and a digit less is lost for each face.
     constexpr double free_normal = 1e-6;
 
-    /// A note is due if the mode of bonds that break lags by this part of the
-    /// energy that they take.
-    constexpr double lag_of_mode = 0.02;
-
     /// Determinant of normals at a vertex: groups of them are 31 degrees apart,
     /// so that a small one means opposite ones, or three in a plane.
     constexpr double dependent_normals = 1e-3;
@@ -93,6 +89,14 @@ namespace Debond
 
     /// Energies of bonds that are not negative, to the largest one.
     constexpr double negative_energy = 1e-12;
+
+    /// A step is done again, or a note is due, if the mode of bonds that are
+    /// damaged lags by this part of the energy that they take.
+    constexpr double lag_of_mode = 0.02;
+
+    /// Openings of bonds that bear nothing yet, to that at which they begin to
+    /// be damaged.
+    constexpr double bears_nothing = 0.1;
 
     /// Displacements at a kink, to themselves: a point so close to it may be on
     /// the other side on another machine.

@@ -2,6 +2,7 @@
 #ifndef debond_contact_adhesion_integral_h
 #define debond_contact_adhesion_integral_h
 
+#include <debond/base/tolerances.h>
 #include <debond/contact/contact_points.h>
 #include <debond/contact/law.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -20,12 +21,12 @@ namespace Debond
     std::vector<double> reached = {};
 
     /// Where their fracture energy depends on the mode, what it has been
-    /// multiplied with, the part of shear at the last state, and the energy
-    /// that they have taken.
+    /// multiplied with, the part of shear, and the energy that they have taken.
     std::vector<double> toughness = {}, mixity = {}, taken = {};
 
     /// By how much the energies that bonds have taken would differ with the
-    /// modes at the ends of the steps.
+    /// modes at the ends of the steps, of those that bore nothing with those
+    /// at which they began to.
     double lag = 0.;
 
     bool
@@ -116,6 +117,16 @@ namespace Debond
     /// they remember, with which they have a potential.
     void
     freeze_mode();
+
+    /// From now on bonds that bore nothing at @p last_s, the state before with
+    /// its bonds @p last, and that are damaged on the straight way to @p s, or
+    /// would be with the energy of their mode, remember the mode at which that
+    /// begins. Returns the part of what all bonds take on the way that would
+    /// differ with the energies of these modes. Adds to BondMemory::lag.
+    double
+    adapt_mode(const AdhesionIntegral &last,
+               const VectorView       &last_s,
+               const VectorView       &s);
 
     /// The memory of the bonds of a node; where points are not nodes the
     /// largest of the points around it.
@@ -274,6 +285,17 @@ namespace Debond
                     const std::vector<double> &delta) const;
 
   private:
+    /// memory() with the lists of modes.
+    BondMemory
+    memory_with_modes() const;
+
+    /// Returns whether bonds at @p stretch bear enough to have a mode.
+    bool
+    bears(const double stretch) const
+    {
+      return stretch < Tolerance::bears_nothing * law.pieces()[0].lower;
+    }
+
     /// Adds the second derivative of a function of the opening of @p point at
     /// a @p jump: @p along the jump and @p across it, in the product of jumps.
     static void

@@ -29,6 +29,21 @@ namespace Debond
     {
       return normal * other.normal + shear * (tangential * other.tangential);
     }
+
+    /// Returns the part of shear in what bonds at this jump have stored, from 0
+    /// to 1; no number where they have stored nothing.
+    double
+    part_of_shear(const double shear) const
+    {
+      return shear * tangential.norm_square() / product(*this, shear);
+    }
+
+    /// Returns this jump and @p part of @p way.
+    Jump
+    moved(const Jump &way, const double part) const
+    {
+      return {normal + part * way.normal, tangential + part * way.tangential};
+    }
   };
 
 
@@ -95,10 +110,14 @@ namespace Debond
     double
     stretch(const VectorView &s) const
     {
-      if (!shears())
-        return normal_displacement(s) / bonds.stretch;
-      const Jump<dim> own = jump(s);
-      return -std::sqrt(own.product(own, bonds.shear)) / bonds.stretch;
+      return shears() ? stretch_at(jump(s)) :
+                        normal_displacement(s) / bonds.stretch;
+    }
+
+    double
+    stretch_at(const Jump<dim> &jump) const
+    {
+      return -std::sqrt(jump.product(jump, bonds.shear)) / bonds.stretch;
     }
 
     /// Calls @p visit (unknown, derivative of the jump by it) for all unknowns
