@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace Debond
@@ -30,19 +31,37 @@ namespace Debond
         }
       return result;
     }
+
+
+
+    /// The derivative of Phi where all bonds are open as far as can be: what
+    /// curves that end with a traction pull with.
+    template <int dim>
+    Eigen::VectorXd
+    pull_far_away(const AdhesionIntegral<dim> &adhesion)
+    {
+      Eigen::VectorXd s = Eigen::VectorXd::Zero(adhesion.n_unknowns());
+      s.head(adhesion.n_nodes())
+        .setConstant(-std::cbrt(std::numeric_limits<double>::max()));
+      return adhesion.subgradient(s).head(adhesion.n_nodes());
+    }
   } // namespace
 
 
 
   template <int dim>
   std::optional<ComingOff<dim>>
-  coming_off(const ElasticProblem<dim> &problem,
-             const AdhesiveLaw         &law,
-             const LoadFactors          factors)
+  coming_off(const ElasticProblem<dim>   &problem,
+             const AdhesionIntegral<dim> &adhesion,
+             const LoadFactors            factors)
   {
-    const auto &nodes   = problem.unknowns().contact().boundary().nodes;
-    const auto &motions = problem.unknowns().held_by_contact().motions;
-    if (motions.empty() || nodes.empty() || !law.lets_go())
+    const auto &nodes          = problem.unknowns().contact().boundary().nodes;
+    const auto &motions        = problem.unknowns().held_by_contact().motions;
+    const PiecewiseEnergy &law = adhesion.adhesive_law().pieces();
+    if (motions.empty() || nodes.empty() || law[law.size() - 1].curvature != 0.)
+      return {};
+    const Eigen::VectorXd pull = pull_far_away(adhesion);
+    if (adhesion.shears() && !pull.isZero(0.))
       return {};
 
     // Once bonds have broken nothing holds nodes along the boundary.
@@ -51,8 +70,9 @@ namespace Debond
     Eigen::MatrixXd towards = all.leftCols(nodes.size());
     // Of nodes that a rotation does not move only rounding is left.
     const double rounding = Tolerance::motion_off * all.cwiseAbs().maxCoeff();
-    towards = (towards.array().abs() < rounding).select(0., towards);
-    const WorkOfLoads work = work_of_loads(problem, factors, motions);
+    towards          = (towards.array().abs() < rounding).select(0., towards);
+    WorkOfLoads work = work_of_loads(problem, factors, motions);
+    work.along -= all.leftCols(nodes.size()) * pull;
     // Twice, as its errors are relative to what it projects.
     std::optional<Eigen::VectorXd> projection =
       project_on_polar_cone(towards, work.along);

@@ -181,16 +181,6 @@ namespace Debond
 
 
 
-  bool
-  AdhesiveLaw::lets_go() const
-  {
-    const PiecewiseEnergy::Piece &last = minimum[minimum.size() - 1];
-    // What decays holds nothing where it has decayed.
-    return last.is_flat() || last.decay > 0.;
-  }
-
-
-
   double
   AdhesiveLaw::bond_threshold() const
   {

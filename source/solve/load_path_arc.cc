@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interruption.h>
+#include <debond/base/tolerances.h>
 #include <debond/solve/load_path_arc.h>
 
 #include <algorithm>
@@ -172,8 +173,12 @@ namespace Debond
           arc.note =
             "The arc ends after " + std::to_string(most) + " changes of nodes.";
         else
-          // Nodes of a body at rest change one after the other.
-          is_going = path.t() == before || add(!path.was_unstable());
+          // Nodes that change at one factor, as those of a body at rest, do so
+          // one after the other, and rounding is all that is between them.
+          is_going =
+            std::abs(path.t() - before) <=
+              Tolerance::same_breakpoint * (interval.second - interval.first) ||
+            add(!path.was_unstable());
       }
     return arc;
   }

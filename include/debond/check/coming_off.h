@@ -2,7 +2,7 @@
 #ifndef debond_check_coming_off_h
 #define debond_check_coming_off_h
 
-#include <debond/contact/law.h>
+#include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/rigid_motions.h>
 
@@ -30,19 +30,20 @@ namespace Debond
   /**
    * Whether the loads times @p factors pull the body off, from loads, supports
    * and law, without the solver: the motion is the projection of the loads'
-   * resultant on the rigid motions that supports and foundation allow. Far
-   * enough along it all bonds that move are on the last piece of the law, where
-   * they do not pull.
+   * resultant, less what bonds still pull with, on the rigid motions that
+   * supports and foundation allow. Far enough along it all bonds that move are
+   * on the last piece of the law, where they pull with one traction or none.
    *
    * None if the foundation alone balances the loads, if what is left is
-   * rounding, or if the law never stops to pull: then the body does not come
-   * off, or it cannot be told.
+   * rounding, or if bonds pull the more the further they are opened, or with a
+   * traction in shear too: then the body does not come off, or it cannot be
+   * told.
    */
   template <int dim>
   std::optional<ComingOff<dim>>
-  coming_off(const ElasticProblem<dim> &problem,
-             const AdhesiveLaw         &law,
-             const LoadFactors          factors);
+  coming_off(const ElasticProblem<dim>   &problem,
+             const AdhesionIntegral<dim> &adhesion,
+             const LoadFactors            factors);
 } // namespace Debond
 
 #endif

@@ -108,10 +108,6 @@ namespace Debond
       return minimum[piece].is_flat();
     }
 
-    /// Returns whether bonds hold nothing far away.
-    bool
-    lets_go() const;
-
     /// The displacement below which bonds are on the last piece, as a positive
     /// length (the paper's M); zero if there is no other.
     double
