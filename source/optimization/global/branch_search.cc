@@ -340,6 +340,10 @@ namespace Debond
     /// With more unknowns the first node takes longer than the first search.
     constexpr unsigned int largest_first_look = 100;
 
+    /// Those of a first look on so many: a proof of few nodes takes less time
+    /// than the quickest search.
+    constexpr unsigned int nodes_of_first_look = 10;
+
     /// Each is begun because the one before found a lower point.
     constexpr unsigned int most_proofs = 4;
 
@@ -364,13 +368,13 @@ namespace Debond
           std::min(double(most_nodes), most_operations / (n * n * n))));
 
         const Eigen::VectorXd given = s;
-        if (is_separable && is_proved(s, is_small ? 1 : 0))
+        if (is_separable && is_proved(s, is_small ? nodes_of_first_look : 0))
           return result;
         BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
         search(quick, s);
-        // The first node at the same point is the same.
+        // The first nodes from the same point are the same.
         const bool is_looked_at = is_separable && is_small && s == given;
         if (problem.interruption.requested() ||
             (!is_looked_at && is_proved(s, 1)))
