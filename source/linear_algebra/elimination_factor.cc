@@ -68,7 +68,9 @@ namespace Debond
 
   IndefiniteMatrix::IndefiniteMatrix(const std::string &where)
     : std::runtime_error(
-        "Condensation: the elasticity matrix is not positive definite (" +
-        where + "). Check the supports and the material.")
+        "Condensation: rounding has made the elasticity matrix indefinite (" +
+        where +
+        "): the body is too slender, or its moduli are too far apart, for "
+        "double precision with this mesh. Longer cells lose fewer digits.")
   {}
 } // namespace Debond

@@ -8,6 +8,7 @@
 #include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
+#include <debond/linear_algebra/elimination_factor.h>
 #include <debond/program/command_line.h>
 #include <debond/program/run.h>
 
@@ -212,6 +213,11 @@ namespace Debond
       catch (const BadInput &error)
         {
           lines = error.lines;
+          code  = ExitCode::bad_input;
+        }
+      catch (const IndefiniteMatrix &error)
+        {
+          lines = {error.what()};
           code  = ExitCode::bad_input;
         }
       catch (const std::bad_alloc &)
