@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -283,7 +284,7 @@ namespace Debond
       }
 
       /// Throws unless a multiple of @p normal is a displacement that supports
-      /// allow.
+      /// allow, and they prescribe all of it or nothing.
       void
       check_prescribed(const PrescribedNode<dim>    &prescribed,
                        const dealii::Tensor<1, dim> &normal) const
@@ -299,6 +300,14 @@ namespace Debond
         constexpr double rounding = Tolerance::same_normal;
         const double     multiple =
           square > rounding * rounding ? product / square : 0.;
+        if (largest > 0. && square > rounding && square < 1. - rounding)
+          throw SupportError(SupportError::Subject::displacement,
+                             node_supports.name(prescribed.rows[0].support),
+                             "at " + point_text(prescribed.position) +
+                               " it is neither along the contact boundary nor "
+                               "across it, and with Tangential displacement = "
+                               "fixed all is known there: prescribe the whole "
+                               "displacement, along the normal");
         for (const auto &row : prescribed.rows)
           if (std::abs(row.value - multiple * (row.direction * normal)) >
               rounding * largest)
@@ -346,11 +355,17 @@ namespace Debond
             if (rest.norm() > Tolerance::free_normal)
               unknown.push_back(k);
           }
+        double along_normal = 0.;
+        for (const auto &row : prescribed.rows)
+          along_normal += std::pow(row.direction * normals[0], 2);
         if (vertex.is_tangential_fixed &&
-            (normals.size() > 1 || unknown.empty()))
+            (normals.size() > 1 || unknown.empty() ||
+             (along_normal > most_inclined * most_inclined &&
+              prescribed.displacement().norm() == 0.)))
           {
             // Where normals differ, all displacements are tangential to one,
-            // also if supports prescribe one of the normal ones.
+            // also if supports prescribe one of the normal ones. Supports that
+            // are inclined to the normal leave no displacement along it.
             unknown.clear();
             prescribed.fix_rest();
             constrained.constrain(prescribed);
