@@ -114,6 +114,9 @@ namespace Debond
     {
       double length;
       double force;
+
+      /// What rounding of forces is of the displacement.
+      double rounding = 0.;
     };
 
 
@@ -134,9 +137,11 @@ namespace Debond
         std::max(Tolerance::contact_force * largest.force,
                  forces.size() == 0 ? 0. : forces.lpNorm<Eigen::Infinity>());
 
-      std::vector<LawScale> scales(forces.size(),
-                                   {largest.length, largest_force});
-      const auto            set = [&](const unsigned int i,
+      // Of vertices that are held along the normal too, which are no nodes.
+      std::vector<LawScale> scales;
+      for (const double least : resolved)
+        scales.push_back({largest.length, std::max(largest_force, least)});
+      const auto set = [&](const unsigned int i,
                            const BondScale   &bonds,
                            const double       measure) {
         const double threshold = first_threshold(law) * bonds.stretch;
@@ -204,8 +209,9 @@ namespace Debond
                             branches.index(-node.opening / bonds.stretch)));
       const double threshold = first_threshold(law) * bonds.stretch;
       const double no_gap =
-        tolerance *
-        (threshold > 0. ? std::min(threshold, largest_s) : largest_s);
+        std::max(scale.rounding,
+                 tolerance * (threshold > 0. ? std::min(threshold, largest_s) :
+                                               largest_s));
       // A small gap under pressure is contact that an iterative method has not
       // closed yet.
       const double gap =
@@ -339,11 +345,12 @@ namespace Debond
       /// stays far from the foundation, w is larger than u.
       double rounding_of_gaps = 0.;
 
-      /// The least force that is resolved beside these loads, whatever rounding
-      /// is where it acts. A body that no force presses has only rounding of
-      /// gaps. Thermal loads balance each other: where heat has loosened a
-      /// press fit, nothing but rounding is left of the forces, and the
-      /// condensation leaves up to 20 times what residual_rounding() counts.
+      /// The least force that is resolved beside these loads and those of other
+      /// times, whatever rounding is where it acts. A body that no force
+      /// presses has only rounding of gaps. Thermal loads balance each other:
+      /// where heat has loosened a press fit, nothing but rounding is left of
+      /// the forces, and the condensation leaves up to 20 times what
+      /// residual_rounding() counts.
       double resolved_beside_loads = 0.;
 
       double
@@ -369,7 +376,8 @@ namespace Debond
     force_scales(const ElasticProblem<dim> &problem,
                  const DofVector           &u,
                  const DofVector           &residual,
-                 const LoadFactors          factors)
+                 const LoadFactors          factors,
+                 const double               least_force)
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const ElasticFields<dim>   &fields   = problem.fields();
@@ -399,8 +407,7 @@ namespace Debond
           result.largest() < largest)
         result.rounding.add(largest);
       result.resolved_beside_loads =
-        std::max(Tolerance::negligible_force *
-                   (fields.is_heated() ? result.load : 0.),
+        std::max(least_force,
                  Tolerance::resolved *
                    std::min(result.rounding_of_gaps,
                             Tolerance::negligible_force * result.largest()));
@@ -619,7 +626,7 @@ namespace Debond
           const Jump<dim> jump   = {std::min(s, 0.), slip};
           const double    square = jump.product(jump, bonds.shear);
           node.mode_mixity =
-            square == 0. ? 0. : bonds.shear * slip.norm_square() / square;
+            square == 0. ? 0. : jump.part_of_shear(bonds.shear);
           if (bonds.shear_energy == 0.)
             node.opening = std::sqrt(square);
         }
@@ -662,6 +669,7 @@ namespace Debond
          const AdhesionIntegral<dim> &adhesion,
          const DofVector             &u,
          const LoadFactors            factors,
+         const double                 least_force,
          const double                 tolerance)
   {
     if (!std::all_of(u.begin(), u.end(), [](const double x) {
@@ -685,11 +693,9 @@ namespace Debond
     const std::vector<double> shear_damages = shear_damage(adhesion, s);
 
     Verification<dim> result;
-    result.state_names     = state_names(adhesion.adhesive_law());
-    result.penetration     = 0.;
-    result.largest_opening = 0.;
-    result.broken_zone =
-      broken_zone(boundary, adhesion.adhesive_law(), adhesion, s);
+    result.state_names         = state_names(adhesion.adhesive_law());
+    result.penetration         = 0.;
+    result.largest_opening     = 0.;
     result.without_bonds       = zone_without_bonds(boundary, adhesion);
     const unsigned int n_nodes = adhesion.n_nodes();
     for (unsigned int i = 0; i < n_nodes; ++i)
@@ -705,8 +711,9 @@ namespace Debond
     if (adhesion.shears())
       result.slips = slips;
 
-    const ForceScales found = force_scales(problem, u, residual, factors);
-    const std::vector<LawScale> scales =
+    const ForceScales found =
+      force_scales(problem, u, residual, factors, least_force);
+    std::vector<LawScale> scales =
       law_scales<dim>(adhesion,
                       boundary,
                       forces,
@@ -715,6 +722,21 @@ namespace Debond
                       {displacement.linfty_norm(), found.supported});
     const std::vector<double> distances =
       violations(adhesion, s, forces, scales);
+
+    // What is open by rounding is closed.
+    const DofVector diagonal = problem.diagonal();
+    Eigen::VectorXd rounded  = s;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      {
+        const auto dof = contact.normal_dofs()[i];
+        scales[i].rounding =
+          std::max(tolerance * least_force, found.rounding(dof)) /
+          diagonal(dof);
+        if (std::abs(s(i)) <= scales[i].rounding)
+          rounded(i) = 0.;
+      }
+    result.broken_zone =
+      broken_zone(boundary, adhesion.adhesive_law(), adhesion, rounded);
 
     // Where all bonds that broke for good are closed again, s is rounding.
     double largest_s = s.head(n_nodes).template lpNorm<Eigen::Infinity>();

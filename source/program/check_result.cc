@@ -216,7 +216,7 @@ namespace Debond
         // minimum.
         result.coming_off =
           coming_off(scene.problem(),
-                     scene.law(),
+                     scene.adhesion(),
                      result.solve.comes_off_at.value_or(1.).loads);
         if (!result.coming_off)
           not_off =
@@ -237,9 +237,12 @@ namespace Debond
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
-    result.verification =
-      verify(scene.problem(), bonds, result.solve.u, result.solve.load_factor);
-    const auto values = [&](const Probes<dim> &probes) {
+    result.verification = verify(scene.problem(),
+                                 bonds,
+                                 result.solve.u,
+                                 result.solve.load_factor,
+                                 scene.least_force());
+    const auto values   = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solve.u,
                            result.solve.load_factor);

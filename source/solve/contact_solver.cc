@@ -90,14 +90,14 @@ namespace Debond
     /// The minimum of J, which is the functional of the problem and the @p
     /// energy of what is prescribed.
     ContactMinimum
-    by_majorise_minimise(const SolverParameters &parameters,
-                         const double            energy,
-                         Progress               &progress,
-                         MajorantProblem        &problem)
+    by_majorise_minimise(const MajoriseMinimiseParameters &parameters,
+                         const double                      energy,
+                         Progress                         &progress,
+                         MajorantProblem                  &problem)
     {
       ContactMinimum result;
       static_cast<MajoriseMinimiseResult &>(result) =
-        MajoriseMinimise(parameters.majorise_minimise)
+        MajoriseMinimise(parameters)
           .minimize(problem,
                     progress.monitor<MajoriseMinimiseIteration>(energy));
       add_energy(energy, result);
@@ -178,7 +178,8 @@ namespace Debond
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
-        return by_majorise_minimise(parameters,
+        return by_majorise_minimise(scene.minimisation(
+                                      parameters.majorise_minimise),
                                     here->energy_at_zero(),
                                     progress,
                                     condensed);
@@ -358,15 +359,12 @@ namespace Debond
                Progress                    &progress) override
       {
         const DofVector load = problem.load(factors);
-        // Without a load the body at rest is the minimum. On the way from
-        // another state residuals would have nothing to be relative to.
-        if (load.all_zero())
-          u = 0.;
         // J on all unknowns, where each majorant is minimised only as exactly
         // as is of use for the next one.
         DisplacementProblem minimised(
           problem, load, bonds, *cycle, u, progress.interruption);
-        return by_majorise_minimise(parameters,
+        return by_majorise_minimise(scene.minimisation(
+                                      parameters.majorise_minimise),
                                     prescribed_energy(problem, bonds, factors),
                                     progress,
                                     minimised);

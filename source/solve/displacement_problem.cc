@@ -98,6 +98,7 @@ namespace Debond
     const double scale      = largest_force == 0. ? 1. : 1. / largest_force;
     state.residual          = scale * violation.l2_norm();
     state.residual_rounding = scale * force_rounding;
+    state.largest_force     = largest_force;
     return state;
   }
 

@@ -64,7 +64,8 @@ namespace Debond
         Eigen::VectorXd  s = neighbour.s;
         CondensedProblem problem(condensed_problem(condensed, bonds), s);
         const MajoriseMinimiseResult minimum =
-          MajoriseMinimise(parameters.majorise_minimise)
+          MajoriseMinimise(
+            scene.scene.minimisation(parameters.majorise_minimise))
             .minimize(problem, [this](const auto &) {
               return !interruption.requested();
             });

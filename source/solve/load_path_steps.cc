@@ -23,7 +23,8 @@ namespace Debond
                                     const AdhesionIntegral<dim> &bonds,
                                     const LoadFactors            factors,
                                     const DofVector             &u)
-    : verification(verify(scene.problem(), bonds, u, factors))
+    : verification(
+        verify(scene.problem(), bonds, u, factors, scene.least_force()))
     , state(load_path_state(scene.problem(), bonds, factors, u, verification))
   {
     const auto add = [&](const std::string &kind, const Probes<dim> &probes) {

@@ -4,6 +4,7 @@
 #include <debond/base/interruption.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
@@ -175,6 +176,23 @@ namespace Debond
                              "for double precision; what is 1e6 times as stiff "
                              "as the rest is as good as rigid"));
     elastic_problem->assemble(body_materials, body_loads, body_dead_loads);
+    // Loads are linear in their factor. What gaps make of the body's stiffness
+    // is left out: no force has to be small beside that.
+    std::vector<double> factors = given.load_path.factors;
+    if (factors.empty())
+      factors = {1.};
+    const auto [least, largest] =
+      std::minmax_element(factors.begin(), factors.end());
+    for (const double factor : {*least, *largest})
+      resolved_force = std::max(
+        resolved_force,
+        elastic_problem->fields().applied_nodal_forces(factor).linfty_norm());
+    DofVector of_supports = elastic_problem->load({0., 1.});
+    of_supports -= elastic_problem->load(0.);
+    for (const double factor : displacement_factors(given.load_path))
+      resolved_force =
+        std::max(resolved_force, std::abs(factor) * of_supports.linfty_norm());
+    resolved_force *= Tolerance::negligible_force;
     // Means over all pieces with a name are reported for every scene, probes
     // where it asks for them.
     piece_means  = Probes<dim>(elastic_problem->unknowns(),

@@ -506,19 +506,25 @@ def check_mixed_mode():
                                                       + m**1.3 / .05**1.3)**(-1 / 1.3))):
         for m in (0., .3, 1.):
             normal, slip = math.sqrt(1 - m), math.sqrt(m / .4)
-            path = solve("Mesh/Lengths=2, 1", "Mesh/Cells=2, 1", "Material/Young modulus=1e7",
-                         "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=", NODAL,
-                         SUPPORTS + "Contact boundary=bottom", *NO_HEALING,
-                         SUPPORTS + "Displacement top=" + vector(slip, normal),
-                         SUPPORTS + f"Displacement left=free; {normal!r}",
-                         SUPPORTS + f"Displacement right=free; {normal!r}",
-                         *bonds(100., 40., .02), "Contact law/Law=bilinear",
-                         "Contact law/Bond strength=1", "Contact law/Mixed mode=" + mode,
-                         "Contact law/Shear fracture energy=0.05",
+            path_entries = [
+                "Mesh/Lengths=2, 1", "Mesh/Cells=2, 1", "Material/Young modulus=1e7",
+                "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=", NODAL,
+                SUPPORTS + "Contact boundary=bottom", *NO_HEALING,
+                SUPPORTS + "Displacement top=" + vector(slip, normal),
+                SUPPORTS + f"Displacement left=free; {normal!r}",
+                SUPPORTS + f"Displacement right=free; {normal!r}", *bonds(100., 40., .02),
+                "Contact law/Law=bilinear", "Contact law/Bond strength=1",
+                "Contact law/Mixed mode=" + mode, "Contact law/Shear fracture energy=0.05"]
+            path = solve(*path_entries,
                          "Load path/Displacement factors=0.005, 0.02, 0.2")["path"]
             check(f"{mode}, {m} has all steps", len(path) == 3, path)
             close(f"{mode}, {m}: energy", path[-1]["dissipated_energy"] if path else None,
                   2 * energy(m), 1e-4)
+            # At once, from rest, on stiff bonds: the mode is that of the step itself.
+            path = solve(*path_entries, "Load path/Displacement factors=0.2")["path"]
+            close(f"{mode}, {m}: energy at once", path[-1]["dissipated_energy"] if path else None,
+                  2 * energy(m), 1e-4)
+    check_opening()
     # With one energy for all modes it is the law without a mode, also where bonds are a field.
     field = moved_strips([BONDED], *NO_HEALING, steps=(.3, .6, 1.))
     field += ["Contact law/Bond stiffness=if(x > 4, 50, 0)", "Contact law/Bond shear stiffness=20",
@@ -529,6 +535,34 @@ def check_mixed_mode():
     errors = solve(*strips("D10", 1.), "Contact law/Mixed mode=power law 1",
                    "Contact law/Shear fracture energy=0.05")["errors"]
     check("a single state is refused", "Contact law/Mixed mode" in errors, errors)
+
+
+def check_opening():
+    """The glue of a double cantilever only opens, whatever rounding makes of slips ahead of the
+    crack: it has its energy without a mode in steps of any length. An arm that is stiffer by a
+    hundredth adds little slip."""
+    scene = ["Mesh/Lengths=30, 2", "Mesh/Cells=60, 4", "Mesh/Cuts=y = 1",
+             "Parts/upper=left: y > 1", "Parts/lower=left: y < 1", "Parts/crack=cut_1: x < 8",
+             "Parts/arm=y > 1", "Material/Young modulus=70000", "Material/Poisson ratio=0",
+             SUPPORTS + "Clamped boundaries=right", SUPPORTS + "Displacement upper=free; 0.5",
+             SUPPORTS + "Displacement lower=free; -0.5", SUPPORTS + "Contact boundary=cut_1",
+             BONDED, "Contact law/Bond stiffness=1000", "Contact law/Fracture energy=0.2",
+             *NO_HEALING]
+    mixed = ["Contact law/Shear fracture energy=1", "Contact law/Mixed mode=benzeggagh-kenane 2"]
+    for name, law in (("winkler", ["Contact law/Bond stiffness crack=0"]),
+                      ("bilinear", ["Contact law/Law=bilinear", "Contact law/Bond strength=15",
+                                    "Contact law/Traction factor=if(x < 8, 0, 1)"])):
+        for modulus, tolerance in ((70000, 1e-9), (70700, 2e-3)):
+            stiff = [*law, f"Material/Young modulus arm={modulus}"]
+            without = solve(*scene, *stiff, "Load path/Displacement factors=1")["path"][-1]
+            for steps in "1", "0.2, 1", "0.2:0.2:1", "0.1:0.1:1":
+                path = solve(*scene, *stiff, *mixed, "Load path/Displacement factors=" + steps)
+                at = f"{name}, {modulus}, steps {steps}"
+                check(at + ": no note on the mode",
+                      not any("mode of bonds" in note for note in path["notes"]))
+                for key in "J", "reaction_upper_y":
+                    close(f"{at}: {key}", path["path"][-1][key] if path["path"] else None,
+                          without[key], tolerance)
 
 
 # ------------------------------------------------------------------ limits and invariances
@@ -674,6 +708,84 @@ def check_invariances():
     compare("twice the half", two, half, 1e-10, 2.)
 
 
+def scaled(entries, L, E):
+    """The entries in other units of length and of stress, with constants for both."""
+    units = {"Lengths": "L", "Young modulus": "E", "Displacement": "L", "Traction": "E",
+             "stiffness": "E/L", "threshold": "L", "strength": "E", "energy": "E*L"}
+    result = [f"Constants/L={L!r}", f"Constants/E={E!r}"]
+    for entry in entries:
+        key, value = entry.split("=", 1)
+        unit = next((unit for word, unit in units.items()
+                     if word in key and "factors" not in key), None)
+        if unit and value:
+            separator = "; " if ";" in value else ", "
+            value = separator.join(part if part.strip() == "free" else f"({part})*{unit}"
+                                   for part in value.split(separator.strip()))
+            value = value.replace("x", "(x/L)")
+        elif "Parts" in key or "Cuts" in key:
+            value = value.replace("y", "y/L") if "Cuts" not in key else value + "*L"
+        elif "Curve" in key:
+            value = ", ".join("{}*L:{}*E".format(*point.split(":"))
+                              for point in value.split(","))
+        result.append(f"{key}={value}")
+    return result
+
+
+def check_nothing_left():
+    """Through the unloaded state, and to the end of all bonds: where nothing acts forces are
+    rounding, and J is what bonds have taken. In three units."""
+    scenes.section("Nothing left")
+    bottom = SUPPORTS + "Contact boundary=bottom"
+    free = SUPPORTS + "Clamped boundaries="
+    cases = {
+        "separate": ["Mesh/Lengths=12, 1.5", "Mesh/Cells=3, 2", "Material/Young modulus=2152",
+                     "Material/Poisson ratio=0.201", bottom, BONDED,
+                     SUPPORTS + "Clamped boundaries=right",
+                     "Loads/Traction top=-0.2685; 0.9248*(1-0.02*x)",
+                     "Contact law/Bond stiffness=13870*(1+0.018*x)",
+                     "Contact law/Bond threshold=0.0012", "Contact law/Bond failure=separate",
+                     "Contact law/Bond shear stiffness=14100",
+                     "Contact law/Shear fracture energy=0.02528",
+                     "Contact law/Quadrature=midpoint",
+                     "Load path/Factors=0.58, 0, 0.08, 0.39, -0.47, 0, -0.38, 0, 0.29, 1, 1.2, 0"],
+        "two bodies": ["Mesh/Lengths=3.18, 1.685", "Mesh/Cells=2, 2", "Mesh/Cuts=y = 0.8425",
+                       "Parts/end=left: y > 0.8425", "Material/Young modulus=173.8",
+                       "Material/Poisson ratio=0.3", BONDED,
+                       SUPPORTS + "Clamped boundaries=bottom, end",
+                       SUPPORTS + "Contact boundary=cut_1",
+                       "Loads/Traction top=-0.3946; 1.813*(1+0.049*x)",
+                       "Contact law/Bond stiffness=401.7*(1+0.039*x)",
+                       "Contact law/Bond threshold=0.006518", "Contact law/Quadrature=gauss 2",
+                       "Contact law/Bond shear stiffness=245",
+                       "Load path/Factors=0.14, 0.23, 0, 0.1, 0.45, 0.41, 0, -0.36, 0, 1, 4, 0"],
+        "rigid at first": ["Mesh/Lengths=6.7, 4.1", "Mesh/Cells=8, 2",
+                           "Material/Young modulus=1483", "Material/Poisson ratio=0.33",
+                           bottom, free, TANGENTIAL + "fixed",
+                           SUPPORTS + "Displacement top=0.05; 0", "Contact law/Law=curve",
+                           "Contact law/Curve=0:21.35, 0.0037:22.48, 0.0111:22.23, 0.0185:0",
+                           "Load path/Displacement factors=0.34, 0.88, -0.34, 0, 0.36, 0, 3, 0"],
+        "slid off": ["Mesh/Lengths=5, 10", "Mesh/Cells=10, 2", "Material/Young modulus=100",
+                     "Material/Poisson ratio=0", free, BONDED,
+                     SUPPORTS + "Contact boundary=left", SUPPORTS + "Displacement right=0; -0.62",
+                     SUPPORTS + "Displacement bottom=0; free",
+                     SUPPORTS + "Displacement top=0; free", "Contact law/Law=bilinear",
+                     "Contact law/Bond stiffness=30000", "Contact law/Bond strength=3",
+                     "Contact law/Fracture energy=0.9", "Load path/Displacement factors=1, 8, 0"]}
+    for name, entries in cases.items():
+        factor = "displacement_factor" if "Displacement" in entries[-1] else "factor"
+        for L, E in ((1., 1.), (1e-3, 1e6), (1e3, 1e-3)):
+            at = f"{name}, {L}"
+            result = solve(*scaled(entries, L, E), *NO_HEALING)
+            check(at + " succeeds", result["status"] == "success", result["errors"])
+            unit = E * L**2
+            for row in result["path"]:
+                if row[factor] == 0. or name == "slid off":
+                    close(f"{at}, {row['step']:g}: J", row["J"], row["dissipated_energy"], 1e-9,
+                          unit * 1e-3)
+            if name == "slid off":
+                close(at + ": all is taken", result["path"][-1]["J"], 9 * unit, 1e-9)
+
+
 def check_errors():
     scenes.section("Refused")
     scene = strips("D10", 1.)
@@ -693,5 +805,5 @@ def check_errors():
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_columns, check_pressed, check_layers, check_softening_column, check_oblique,
     check_strips, check_three_strips, check_paths, check_mixed_mode, check_limits,
-    check_rings, check_invariances, check_errors)))
+    check_rings, check_invariances, check_nothing_left, check_errors)))
 scenes.end()

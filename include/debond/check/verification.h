@@ -194,14 +194,18 @@ namespace Debond
   /// as contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   ///
+  /// @p least_force: that which is resolved wherever it acts, see
+  /// Scene::least_force().
+  ///
   /// All ranks that share the problem have to call it; all have the result.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,
          const AdhesionIntegral<dim> &adhesion,
          const DofVector             &u,
-         const LoadFactors            factors   = 1.,
-         const double                 tolerance = Tolerance::contact_law);
+         const LoadFactors            factors     = 1.,
+         const double                 least_force = 0.,
+         const double                 tolerance   = Tolerance::contact_law);
 } // namespace Debond
 
 #endif

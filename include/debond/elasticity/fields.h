@@ -94,13 +94,6 @@ namespace Debond
     temperature_change(const Cell               &cell,
                        const dealii::Point<dim> &unit_point) const;
 
-    /// Returns whether a change of temperature is among the loads.
-    bool
-    is_heated() const
-    {
-      return !temperature_changes.empty();
-    }
-
     const ElasticUnknowns<dim> &
     unknowns() const
     {

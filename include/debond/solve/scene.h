@@ -3,6 +3,7 @@
 #define debond_solve_scene_h
 
 #include <debond/base/dof_vector.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
@@ -11,6 +12,7 @@
 #include <debond/mesh/body.h>
 #include <debond/mesh/by_region.h>
 #include <debond/optimization/bundle/functional.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <memory>
 
@@ -177,6 +179,24 @@ namespace Debond
       return body_notes;
     }
 
+    /// The least force that is resolved beside the loads and what is
+    /// prescribed, each where it is largest on the load path. Where nothing
+    /// acts, or all has come off, forces are rounding, and are compared with
+    /// this.
+    double
+    least_force() const
+    {
+      return resolved_force;
+    }
+
+    /// A minimisation that takes for zero what verifications do.
+    MajoriseMinimiseParameters
+    minimisation(MajoriseMinimiseParameters parameters) const
+    {
+      parameters.zero_force = Tolerance::contact_law * resolved_force;
+      return parameters;
+    }
+
     /// Triangles or tetrahedra, and free unknowns, of the whole scene.
     unsigned int
     n_cells() const
@@ -225,6 +245,7 @@ namespace Debond
     std::shared_ptr<const Body<dim>>            elastic_body;
     std::unique_ptr<dealii::Triangulation<dim>> triangulation;
     std::vector<std::string>                    body_notes;
+    double                                      resolved_force = 0.;
     Probes<dim>                                 named_probes;
     Probes<dim>                                 piece_means;
     BoundaryConditions                          boundary_conditions;

@@ -139,6 +139,7 @@ namespace Debond
       largest_force == 0. ?
         0. :
         Tolerance::row_of_product * largest_terms / largest_force;
+    state.largest_force = largest_force;
     return state;
   }
 
@@ -216,6 +217,10 @@ namespace Debond
       {
         way = force(free);
         factor.solve_in_place(way);
+        // Along what nothing holds the factor, and so the step, is of rounding.
+        if (N.cols() > 0 &&
+            way.dot(force(free)) <= loose_stiffness * way.squaredNorm())
+          return;
       }
     else
       {
@@ -253,7 +258,7 @@ namespace Debond
       return;
     // Up to where the first component meets its bound: the active set is a
     // matter of the next majorant.
-    double limit = std::numeric_limits<double>::max();
+    double limit = infinity;
     for (Eigen::Index i = 0; i < s.size(); ++i)
       if (ds(i) > 0.)
         limit = std::min(limit, (upper(i) - s(i)) / ds(i));
@@ -274,17 +279,18 @@ namespace Debond
          k < most_pieces_passed * s.size() && slope < -least_slope && t < limit;
          ++k)
       {
-        // The Newton step on the line, or where J is concave there one that
-        // grows.
+        // The Newton step on the line, or where J is concave there that of the
+        // body alone, up to which J falls, and growing ones.
         const double curvature =
           stiffness + ds.dot(phi.second_derivative(s) * ds);
         const double step =
           std::min(limit - t,
-                   curvature > 0. ? -slope / curvature : std::max(1., t));
+                   curvature > 0. ? -slope / curvature :
+                                    std::max(-slope / std::abs(stiffness), t));
         const double part = phi.first_change(s, ds, step);
         // What nothing holds would fall for ever: the next majorant says so.
         if (N.cols() > 0 && curvature <= loose_stiffness * ds.squaredNorm() &&
-            part >= step && step < limit - t)
+            part >= step && (step < limit - t || std::isinf(limit)))
           return;
         // Beyond a kink, as on it the piece before it holds: by rounding, and
         // further for those that hardly move.

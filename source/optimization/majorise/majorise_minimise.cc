@@ -45,7 +45,15 @@ namespace Debond
     const auto left = [&]() {
       return what_is_left(result, parameters.tolerance);
     };
-    MajorantProblem::State state = problem.evaluate();
+    const auto evaluate = [&]() {
+      MajorantProblem::State state = problem.evaluate();
+      if (state.largest_force > 0.)
+        state.residual_rounding =
+          std::max(state.residual_rounding,
+                   parameters.zero_force / state.largest_force);
+      return state;
+    };
+    MajorantProblem::State state = evaluate();
     const auto             note  = [&]() {
       result.functional = state.functional;
       result.residual   = state.residual;
@@ -119,7 +127,7 @@ namespace Debond
                       " in ",
                       iteration.active_set_steps,
                       " active-set steps. Try another method."));
-            state = problem.evaluate();
+            state = evaluate();
             inner_tolerance *= forcing;
           }
         while (has_risen() && inner_tolerance > 0.01 * tolerance);

@@ -34,6 +34,7 @@ namespace Debond
       /// largest terms, and the part of it that rounding leaves.
       double residual;
       double residual_rounding;
+      double largest_force; ///< the largest of these terms
 
       unsigned int n_active; ///< components of s that are zero
     };
@@ -76,6 +77,10 @@ namespace Debond
     double tolerance = 1e-10;
 
     unsigned int maximum_iterations = 200;
+
+    /// Violations below are rounding, of forces that may act at other times:
+    /// without any force there is nothing else that they are small beside.
+    double zero_force = 0.;
   };
 
 
