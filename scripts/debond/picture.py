@@ -93,11 +93,13 @@ class Run:
         self.factor = max(("factor", "displacement_factor"), key=lambda name: (
             numpy.ptp(path.get(name, 0.)) > 0, numpy.any(path.get(name, 1.) != 1)))
         n = len(path.get("step", []))
-        if not 0 <= step <= n:
-            raise BadInput(f"{directory} has no step {step}, but {n}")
+        if step is not None and not 1 <= step <= n:
+            raise BadInput(f"{directory} has no step {step}, " + (
+                f"but 1 to {n}" if n else "as it is no load path"))
         if n:
             words, factor = words_for(self.factor, self.units), path[self.factor]
-            self.title = f"step {step or n} of {n}, {words} {factor[step - 1]:.4g}\n"
+            shown = step or n
+            self.title = f"step {shown} of {n}, {words} {factor[shown - 1]:.4g}\n"
         # What load_path.csv knows of the largest displacement in all steps.
         self.largest = max([0., *(
             numpy.nanmax(abs(values)) for name, values in path.items()
@@ -455,7 +457,7 @@ def draw_history(run):
         run.save(figure, "proof")
 
 
-def draw(directory, units="", field="von_mises", path=(), view=(), step=0):
+def draw(directory, units="", field="von_mises", path=(), view=(), step=None):
     """All that a directory has something of, or the body and its contact
     boundary in a step. `units`: 'LENGTH, STRESS'; `view`: degrees."""
     run = Run(directory, step, units)
@@ -484,7 +486,7 @@ def main():
     parser.add_argument("--field", default="von_mises", help="of body.vtu")
     parser.add_argument("--path", default=[], action="append", help="columns of "
                         'load_path.csv, as in "reaction_left_y over factor"')
-    parser.add_argument("--step", type=int, default=0, help="draws the body and "
+    parser.add_argument("--step", type=int, help="draws the body and "
                         "the contact boundary in this step of a load path")
     parser.add_argument("--view", type=angles, metavar="AZIMUTH,ELEVATION",
                         help="in degrees, where a body in 3D is seen from, as in "

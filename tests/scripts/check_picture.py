@@ -84,14 +84,16 @@ def refusal(directory, *options):
 
 
 # A path by named columns, and what cannot be drawn.
-picture.draw_path(picture.Run("path", 0, ""), ["contact_reaction_y over mean_top_y"])
+picture.draw_path(picture.Run("path", None, ""), ["contact_reaction_y over mean_top_y"])
 for options, words in (
         (["--path", "contact_reaction over factor"], "but contact_reaction_"),
         (["--path", "status over factor"], "status of load_path.csv has no numbers"),
         (["--path", "J over factor", "--step", "2"], "not for a --step"),
-        (["--step", "99"], "no step 99"), (["--units", "mm"], "LENGTH, STRESS")):
+        (["--step", "99"], "no step 99, but 1 to"), (["--step", "0"], "no step 0, but 1 to"),
+        (["--units", "mm"], "LENGTH, STRESS")):
     assert words in refusal("path", *options), refusal("path", *options)
 assert "for load paths" in refusal("plane", "--path", "J over factor")
+assert "no load path" in refusal("plane", "--step", "0")
 
 # The colours leave out few cells and say which.
 _, axes = picture.plt.subplots()
