@@ -8,6 +8,7 @@
 #include <debond/input/expression.h>
 #include <debond/program/check_result.h>
 
+#include <iomanip>
 #include <limits>
 #include <sstream>
 
@@ -17,6 +18,10 @@ namespace Debond
   {
     /// Beyond it an estimate tells little but that the mesh is too coarse.
     constexpr double largest_mesh_error = 0.2;
+
+    /// Larger factors of an estimate that two meshes alone have measured are
+    /// wrong more often than right, see doc/notes/accuracy.md.
+    constexpr double reliable_factor = 1.5;
 
 
 
@@ -173,6 +178,18 @@ namespace Debond
           if (result.estimate->relative() > largest_mesh_error)
             result.notes.push_back(
               "the mesh is too coarse for J: see error of the mesh");
+          const double factor = result.estimate->factor.value_or(1.);
+          if (factor > reliable_factor &&
+              !result.levels.rbegin()[1].error_factor)
+            {
+              std::ostringstream note;
+              note << "two meshes alone have measured the error, so that it "
+                      "may be up to "
+                   << std::setprecision(2) << factor
+                   << " times too high: a third mesh, by a larger "
+                      "Accuracy/Maximum unknowns, tells more";
+              result.notes.push_back(note.str());
+            }
           if ((!result.levels.empty() ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))

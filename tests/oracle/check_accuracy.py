@@ -230,6 +230,30 @@ def check_refinement():
         close("estimate", result["estimated_error"], last["estimated_error"], 1e-12)
 
 
+def check_thin_strip():
+    """A cantilever of length 1 and thickness h under a traction q, J = -3 q^2 / (10 E h^3) by
+    beam theory. On one layer of linear cells most of J is missing, and of the way from the
+    first mesh to the second residuals show nothing: two meshes say too much, with a note that
+    says how much; later ones do not."""
+    h, q = 0.02, 1e-9
+    strip = NO_CONTACT + [f"Mesh/Lengths=1, {h}", "Mesh/Cells=16, 1", "Material/Young modulus=1",
+                          "Material/Poisson ratio=0", "Boundary conditions/Clamped boundaries=left",
+                          f"Loads/Traction top=0; {q}"]
+    J = -0.3 * q * q / h**3
+    for unknowns, n_meshes in (300, 2), (4000, 4):
+        result = solve(*strip, f"Accuracy/Maximum unknowns={unknowns}")
+        check("meshes of a strip", len(result["levels"]) == n_meshes, len(result["levels"]))
+        ratio = result["estimated_error"] / (J / result["functional"] - 1.)
+        notes = [note for note in result["notes"] if "two meshes alone" in note]
+        if n_meshes == 2:
+            check("two meshes", 2. < ratio <= result["error_factor"], ratio)
+            check("a note says so", len(notes) == 1
+                  and f"up to {result['error_factor']:.2g} times" in notes[0], notes)
+        else:
+            check_factor("more meshes", ratio, 2.)
+            check("no note", not notes, notes)
+
+
 def check_strong_corner():
     """An L whose re-entrant corner slides along the foundation on both sides: there stresses grow
     like r^(-2/3), so that J of quadratic displacements on uniform meshes converges like h^(2/3)
@@ -282,5 +306,5 @@ def check_strong_corner():
 
 scenes.together(*((test.__name__, test) for test in (
     check_constant_strain, check_closed_forms, check_benchmark, check_quadratic_bodies,
-    check_refinement, check_strong_corner)))
+    check_refinement, check_thin_strip, check_strong_corner)))
 scenes.end()
