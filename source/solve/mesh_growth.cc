@@ -76,7 +76,7 @@ namespace Debond
             least_ratio * before->unknowns <= level.unknowns)
           {
             const double fall = before->functional - level.functional - found;
-            // s_k = (J_m - J_k) / (E_m - E_k) of the theory page, with J as
+            // theta_k = (J_i - J_k) / (e_i - e_k) of the theory page, with J as
             // energies. If the estimate does not fall although J does, the
             // largest factor is assumed; if neither does, the estimate is all
             // that is known.
