@@ -220,10 +220,12 @@ namespace Debond
       if (node.s >= -no_gap ||
           (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
-          // What is closed may slide.
-          node.state = (least_piece > 0 || node.mode_mixity) &&
-                           node.branch == BondState::broken ?
+          // What is closed may slide, and soften or break by it.
+          node.state = node.branch == BondState::broken &&
+                           (least_piece > 0 || node.mode_mixity) ?
                          BondState::broken_but_closed :
+                       node.opening > no_gap && node.branch > BondState::held ?
+                         node.branch :
                          BondState::contact;
           return;
         }

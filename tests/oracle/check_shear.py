@@ -220,6 +220,9 @@ def check_softening_column():
             close(f"{angle}, {l}: J", row["J"], 2 * (taken + (1 - damage) * k * l * l / 2), 2e-4)
             close(f"{angle}, {l}: dissipated", row["dissipated_energy"], 2 * taken, 4e-4,
                   2 * energy)
+            # Closed bonds soften as open ones do.
+            close(f"{angle}, {l}: softening", row["softening_part"], float(first < most < last),
+                  1e-12)
 
 
 # ------------------------------------------------------------------ an oblique joint
