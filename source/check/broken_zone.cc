@@ -24,13 +24,14 @@ namespace Debond
         return 0.;
       if (values.front() >= 0.)
         return 1.;
-      // The corner on the one side of zero that has only one vertex.
+      // The corner on the one side of zero that has only one vertex. Of bonds
+      // that hold at any distance values are minus infinity.
       const bool   one_is_positive = values[n - 2] <= 0.;
       const double corner = one_is_positive ? values.back() : values.front();
       double       part   = 1.;
       for (const double value : values)
         if (value != corner)
-          part *= corner / (corner - value);
+          part /= 1. - value / corner;
       return one_is_positive ? part : 1. - part;
     }
 
@@ -105,11 +106,7 @@ namespace Debond
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s)
   {
-    const unsigned int last = law.pieces().size() - 1;
-    // Bonds that hold at any distance are never broken.
-    if (!law.is_loose(last))
-      return 0.;
-
+    const double broken_beyond = law.broken_beyond();
     // Between points nothing is known of what bonds have been at.
     if (!adhesion.memory().empty() && !adhesion.points().is_nodal())
       return open_measure(adhesion, s);
@@ -120,10 +117,9 @@ namespace Debond
         const auto threshold = [&](const std::array<double, dim> &coordinates) {
           const BondScale bonds = adhesion.points().bonds_at(face, coordinates);
           return bonds.energy == 0. ||
-                     law.pieces().index(
-                       adhesion.reached_at(face, coordinates)) == last ?
+                     adhesion.reached_at(face, coordinates) < -broken_beyond ?
                    0. :
-                   law.bond_threshold() * bonds.stretch;
+                   broken_beyond * bonds.stretch;
         };
         const auto density = [&](const std::array<double, dim> &place) {
           return boundary.density(face, place);
@@ -180,8 +176,8 @@ namespace Debond
          const VectorView            &s)
   {
     std::vector<dealii::Point<dim>> result;
-    const unsigned int              last = law.pieces().size() - 1;
-    if (dim != 2 || last == 0 || !law.is_loose(last))
+    const double                    broken_beyond = law.broken_beyond();
+    if (dim != 2 || broken_beyond == 0.)
       return result;
     // Bonds next to a vertex: 0 if there are none, 2 if they hold.
     std::map<double, std::map<double, unsigned int>> grips;
@@ -205,7 +201,7 @@ namespace Debond
             beyond[k] =
               std::max(adhesion.points().opening(face, place, s),
                        -adhesion.reached_at(face, k) * bonds.stretch) -
-              law.bond_threshold() * bonds.stretch;
+              broken_beyond * bonds.stretch;
             grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
             const dealii::Point<dim> &vertex = face.vertices[k];
             const auto [other, is_first] =

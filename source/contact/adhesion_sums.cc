@@ -11,15 +11,14 @@ namespace Debond
   open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
     // A point is open if it is lifted off and nothing can pull on it: its bonds
-    // are on the last piece, be it now or by their memory, or there are none.
-    const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
-    double                 sum    = 0.;
+    // are broken, be it now or by their memory, or there are none.
+    const double beyond = phi.adhesive_law().broken_beyond();
+    double       sum    = 0.;
     phi.for_each_point(s,
                        [&](const auto &point, double stretch, double reached) {
                          if (stretch < 0. && point.n_entries > 0 &&
                              (point.bonds.energy == 0. ||
-                              pieces.index(std::min(reached, stretch)) + 1 ==
-                                pieces.size()))
+                              std::min(reached, stretch) < -beyond))
                            sum += point.weight;
                        });
     return sum;

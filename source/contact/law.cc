@@ -190,6 +190,27 @@ namespace Debond
 
 
   double
+  AdhesiveLaw::broken_beyond() const
+  {
+    const PiecewiseEnergy::Piece &last = minimum[minimum.size() - 1];
+    double                        end  = bond_threshold();
+    if (last.decay == 0.)
+      return last.is_flat() ? end : infinity;
+    // Damage grows with the opening there, and is 1 but for rounding after 40
+    // lengths of decay.
+    constexpr double broken = 0.99;
+    double           beyond = end + 40. / last.decay;
+    for (unsigned int step = 0; step < 60; ++step)
+      {
+        const double middle                       = 0.5 * (end + beyond);
+        (damage(-middle) < broken ? end : beyond) = middle;
+      }
+    return beyond;
+  }
+
+
+
+  double
   AdhesiveLaw::bond_strength() const
   {
     // Tractions rise to the kinks, as the pieces are monotone between them.

@@ -4,6 +4,8 @@
 
 #include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_sums.h>
+#include <debond/contact/laws/curve.h>
+#include <debond/contact/laws/softening.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <array>
@@ -99,6 +101,36 @@ namespace
     check(std::to_string(dim) + "D, sampled", error, 3e-3);
     check("broken for good", error_for_good, 1e-12);
   }
+
+
+
+  /// Bonds that decay count as broken where they have a hundredth of their
+  /// stiffness, and those that hold at any distance never.
+  void
+  test_without_end()
+  {
+    const ContactBoundary<2>   boundary = one_face<2>();
+    const ContactQuadrature<2> nodal({});
+    const auto                 part = [&](const AdhesiveLaw &law,
+                          const double       opening) {
+      return broken_zone(boundary,
+                         law,
+                         AdhesionIntegral<2>(boundary, law, nodal),
+                         Eigen::Vector2d(0., -opening)) /
+             3.;
+    };
+    // Of 0.5 exp(-decay (d - 0.1)) = 0.01 5 d, which Newton's method solves.
+    const double decay = 0.5 / (1. - 0.5 * 0.5 / (2. * 5.));
+    double       d     = 1.;
+    for (unsigned int k = 0; k < 50; ++k)
+      d -= (decay * (d - 0.1) + std::log(0.1 * d)) / (decay + 1. / d);
+    const AdhesiveLaw decays(exponential_law({5., 0.5, 1.}).pieces);
+    check("decays, all hold", part(decays, 0.999 * d), 0.);
+    check("decays, half is broken", std::abs(part(decays, 2. * d) - 0.5), 1e-9);
+    const AdhesiveLaw holds(
+      curve_law({{0., 0.}, {0.1, 0.5}, {0.2, 0.3}, {0.4, 0.3}}).pieces);
+    check("holds at any distance", part(holds, 1e6), 0.);
+  }
 } // namespace
 
 
@@ -109,4 +141,5 @@ main(int argc, char *[])
   print_figures = argc > 1;
   test<2>();
   test<3>();
+  test_without_end();
 }

@@ -34,6 +34,23 @@ def column(length, modulus, *more):
                                   0.02 * modulus * length), *more)
 
 
+def check_cracks():
+    """The left half of a strip has no bonds and is lifted: laws without an end have its crack."""
+    scenes.section("Cracks")
+    for more in (law("exponential", 1e3, 10, 1), ["Contact law/Law=curve",
+                                                   "Contact law/Curve=0:0, 0.01:10, 0.02:5, 1:5"]):
+        result = solve("Mesh/Lengths=40, 2", "Mesh/Cells=40, 2", "Material/Young modulus=1e4",
+                       "Boundary conditions/Clamped boundaries=right",
+                       "Boundary conditions/Contact boundary=bottom",
+                       "Boundary conditions/Displacement left=free; 0.1", *FREE, *more,
+                       "Contact law/Traction factor=if(x < 20, 0, 1)",
+                       "Load path/Displacement factors=0.5, 1")
+        for row in result["path"]:
+            close("broken zone", row["broken_zone"], 20, 1e-9)
+            check("front", [float(x) for x in str(row["fronts"]).split()] == [20, 0],
+                  row["fronts"])
+
+
 def check_column():
     scenes.section("Column")
     # d, opening, J of the width 2: (d - p)^2 / (2 C) + j_1(p), p = (d - C t) of the line

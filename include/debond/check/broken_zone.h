@@ -16,9 +16,9 @@ namespace Debond
                      const AdhesionIntegral<dim> &adhesion);
 
   /// The length (in 3D the area) of the contact boundary that is open and not
-  /// bonded: where s falls below the last kink of the law, or below 0 where
-  /// there are no bonds or bonds are broken for good. So a crack in 2D ends
-  /// between two nodes, or where the scene's bonds begin.
+  /// bonded: where bonds are opened beyond AdhesiveLaw::broken_beyond(), or at
+  /// all where there are none or they are broken for good. So a crack in 2D
+  /// ends between two nodes, or where the scene's bonds begin.
   template <int dim>
   double
   broken_zone(const ContactBoundary<dim>  &boundary,
@@ -27,10 +27,10 @@ namespace Debond
               const VectorView            &s);
 
   /// Returns the places on a plane body where bonds that hold meet bonds that
-  /// do not, or none, in the order of the faces: where s is at the last kink of
-  /// the law, at a vertex where the scene's bonds begin, or in the middle of a
-  /// face at one end of which bonds are broken for good. They stay where they
-  /// are when a crack closes. Solids have none.
+  /// do not, or none, in the order of the faces: where they are opened by
+  /// AdhesiveLaw::broken_beyond(), at a vertex where the scene's bonds begin,
+  /// or in the middle of a face at one end of which bonds are broken for good.
+  /// They stay where they are when a crack closes. Solids have none.
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,

@@ -12,8 +12,8 @@
 
 namespace Debond
 {
-  /// The length (area) of the points whose bonds are on the last piece of the
-  /// law, or that have none, and that have a gap.
+  /// The length (area) of the points whose bonds are broken, or that have none,
+  /// and that have a gap.
   template <int dim>
   double
   open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s);

@@ -113,6 +113,12 @@ namespace Debond
     double
     bond_threshold() const;
 
+    /// The opening beyond which bonds count as broken: bond_threshold() where
+    /// they bear nothing then, the one at which damage() comes to 0.99 where
+    /// the traction decays, infinite where bonds hold at any distance.
+    double
+    broken_beyond() const;
+
     /// The largest adhesive traction before the last kink, in force per area
     /// (the paper's a M); zero if there is no adhesion.
     double
