@@ -324,10 +324,9 @@ def draw_line(run, all_axes):
     M, stiffness = map(contact.at_nodes, ("bond_threshold", "bond_stiffness"))
     for axes, (key, label, usual) in zip(all_axes, (
             ("u_nu", "normal displacement" + length, M),
-            ("normal_force_density", "normal force density" + stress, M * stiffness),
+            ("normal_traction", "normal traction" + stress, M * stiffness),
             ("slip", "slip" + length, M),
-            ("tangential_force_density", "shear force density" + stress,
-             M * stiffness))):
+            ("shear_traction", "shear traction" + stress, M * stiffness))):
         values = contact.at_nodes(key)
         if values.ndim > 1:
             values = along(values, contact, pieces)
@@ -358,7 +357,7 @@ def draw_line(run, all_axes):
 
 
 def draw_surface(run, all_axes):
-    """Opening, force, slip and shear force if bonds shear, and states, in the plane
+    """Opening, traction, slip and shear traction if bonds shear, and states, in the plane
     in which the surface is widest."""
     contact, length, stress = run.contact, run.units["length"], run.units["stress"]
     wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
@@ -366,10 +365,10 @@ def draw_surface(run, all_axes):
     triangles = contact.mesh.cells[0].data[:, [[0, 1, 2], [0, 2, 3]]]
     for axes, (name, title, shown) in zip(all_axes[:-1], (
             ("gap", "opening" + length, held | True),
-            ("normal_force_density", f"normal force density{stress} (positive: "
+            ("normal_traction", f"normal traction{stress} (positive: "
              "pressed, negative: held)", ~held),
             ("slip", "slip" + length, ~held),
-            ("tangential_force_density", "shear force density" + stress, ~held))):
+            ("shear_traction", "shear traction" + stress, ~held))):
         values = contact.mesh.point_data[name]
         if values.ndim > 1:
             values = numpy.linalg.norm(values, axis=1)

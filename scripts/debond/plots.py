@@ -136,7 +136,7 @@ def axis_of(study):
 
 
 def along_contact(plot, study, rows):
-    title = "u_nu" if plot.name == "displacement" else "normal_force_density"
+    title = "u_nu" if plot.name == "displacement" else "normal_traction"
     for row in rows:
         file = row.case.path("contact.vtu")
         if row.summary and os.path.exists(file):
@@ -209,8 +209,8 @@ KINDS = {
     "displacement": (along_contact, "Normal displacement of the contact "
                      "boundary; negative: lifted off.", "",
                      "normal displacement u_nu", ""),
-    "force": (along_contact, "Normal force density of the contact boundary; "
-              "positive: pressed, negative: held.", "", "normal force density", ""),
+    "force": (along_contact, "Normal traction of the contact boundary; "
+              "positive: pressed, negative: held.", "", "normal traction", ""),
     "law": (law, "Normal force density of the contact nodes over their normal "
             "displacement, on the graph of the contact law.",
             "normal displacement u_nu", "normal force density", "")}

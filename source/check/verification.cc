@@ -245,6 +245,36 @@ namespace Debond
 
 
 
+    /// Sets the tractions at node @p i, whose state is known. @p by_law:
+    /// node_tractions().
+    template <int dim>
+    void
+    set_tractions(const unsigned int            i,
+                  const AdhesionIntegral<dim>  &adhesion,
+                  const Jump<dim>              &by_law,
+                  const dealii::Tensor<1, dim> &slip,
+                  Verification<dim>            &result)
+    {
+      ContactNodeState &node     = result.nodes[i];
+      const BondScale   bonds    = adhesion.points().bonds_at(i);
+      const bool        by_force = node.normal_force > 0. ||
+                            node.state == BondState::contact ||
+                            node.state == BondState::kink;
+      node.normal_traction =
+        by_force ?
+          node.normal_force / adhesion.contact_boundary().nodes[i].measure :
+          by_law.normal;
+      // Bonds that break separately are points of their own in shear.
+      result.shear_tractions.push_back(
+        -(by_law.tangential +
+          (bonds.shear_energy > 0. ?
+             bonds.shear * node.bond_stiffness * (1. - node.shear_damage) :
+             0.) *
+            slip));
+    }
+
+
+
     /// The distance of a force to the allowed ones.
     double
     distance(const double force, const Interval &allowed)
@@ -710,8 +740,6 @@ namespace Debond
           if (!tangent.is_held)
             result.nodes[i].shear_damage = shear_damages[tangent.index];
       }
-    if (adhesion.shears())
-      result.slips = slips;
 
     const ForceScales found =
       force_scales(problem, u, residual, factors, least_force);
@@ -740,6 +768,7 @@ namespace Debond
     result.broken_zone =
       broken_zone(boundary, adhesion.adhesive_law(), adhesion, rounded);
 
+    const std::vector<Jump<dim>> tractions = node_tractions(adhesion, s);
     // Where all bonds that broke for good are closed again, s is rounding.
     double largest_s = s.head(n_nodes).template lpNorm<Eigen::Infinity>();
     for (unsigned int i = 0; i < n_nodes; ++i)
@@ -757,7 +786,12 @@ namespace Debond
           if (!tangent.is_held)
             violation = std::max(violation, distances[tangent.index]);
         set_state(i, adhesion, scales[i], largest_s, tolerance, result);
+        set_tractions(i, adhesion, tractions[i], slips[i], result);
       }
+    if (adhesion.shears())
+      result.slips = slips;
+    else
+      result.shear_tractions.clear();
 
     result.equilibrium_residual =
       found.free > 0. ?

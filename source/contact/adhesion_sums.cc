@@ -89,6 +89,26 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<Jump<dim>>
+  node_tractions(const AdhesionIntegral<dim> &phi, const VectorView &s)
+  {
+    std::vector<Jump<dim>> result(phi.n_nodes());
+    for (const auto &face : phi.contact_boundary().faces)
+      for (unsigned int k = 0; k < phi.contact_boundary().n_face_nodes(); ++k)
+        if (!face.is_held(k))
+          {
+            const Jump<dim> here =
+              traction(phi, face, coefficient_place<dim>(k), s);
+            Jump<dim> &largest = result[face.node(k)];
+            if (here.product(here, 1.) > largest.product(largest, 1.))
+              largest = here;
+          }
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<double>
   shear_damage(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
@@ -186,6 +206,8 @@ namespace Debond
   template decltype(held_forces<3>)             held_forces<3>;
   template decltype(traction<2>)                traction<2>;
   template decltype(traction<3>)                traction<3>;
+  template decltype(node_tractions<2>)          node_tractions<2>;
+  template decltype(node_tractions<3>)          node_tractions<3>;
   template decltype(shear_damage<2>)            shear_damage<2>;
   template decltype(shear_damage<3>)            shear_damage<3>;
   template decltype(is_at_drop<2>)              is_at_drop<2>;

@@ -50,15 +50,8 @@ namespace Debond
     for (const Face &face : contact.faces)
       for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
         if (!face.is_held(k))
-          {
-            Barycentric place = {};
-            if (k < dim)
-              place[k] = 1.;
-            else
-              for (const unsigned int end : simplex_edges[k - dim])
-                place[end] = 0.5;
-            toughness_of_nodes[face.node(k)] = toughness[nearest(face, place)];
-          }
+          toughness_of_nodes[face.node(k)] =
+            toughness[nearest(face, coefficient_place<dim>(k))];
   }
 
 

@@ -25,6 +25,7 @@ namespace Debond
       const auto i = &node - boundary.nodes.data();
       return verification.nodes[i].normal_force / node.measure;
     });
+    table.add("normal_traction", nodes, &ContactNodeState::normal_traction);
     table.add("allowed_lower", nodes, [](const auto &node) {
       return node.allowed_force.lower;
     });
@@ -49,6 +50,9 @@ namespace Debond
           const auto i = &node - boundary.nodes.data();
           return verification.tangential_forces[i].norm() / node.measure;
         });
+        table.add("shear_traction",
+                  verification.shear_tractions,
+                  [](const auto &traction) { return traction.norm(); });
         table.add("mode_mixity", nodes, [](const auto &node) {
           return node.mode_mixity.value_or(0.);
         });

@@ -177,6 +177,8 @@ namespace Debond
        [](const auto &node, const double measure) {
          return node.normal_force / measure;
        }},
+      {"normal_traction",
+       [](const auto &node, const double) { return node.normal_traction; }},
       {"law_violation",
        [](const auto &node, const double) { return node.violation; }},
       {"bond_stiffness",
@@ -197,7 +199,7 @@ namespace Debond
        [](const auto &node, const double) { return node.shear_damage; }}};
 
     /// Displacement, tangential force density and the numbers above, with bonds
-    /// that shear also the slip and their numbers.
+    /// that shear also slip, shear traction and their numbers.
     using ContactValues = std::vector<double>;
 
 
@@ -212,7 +214,7 @@ namespace Debond
               const unsigned int                         k)
     {
       constexpr double       nan = std::numeric_limits<double>::quiet_NaN();
-      dealii::Tensor<1, dim> u, force, slip;
+      dealii::Tensor<1, dim> u, force, slip, shear;
       ContactNodeState       state   = {};
       double                 measure = 1.;
       if (!face.is_held(k))
@@ -223,7 +225,10 @@ namespace Debond
           force = verification.tangential_forces[node] / measure;
           state = verification.nodes[node];
           if (!verification.slips.empty())
-            slip = verification.slips[node];
+            {
+              slip  = verification.slips[node];
+              shear = verification.shear_tractions[node];
+            }
         }
       else
         {
@@ -236,9 +241,10 @@ namespace Debond
               u       = state.u_nu * held.normal;
             }
           for (unsigned int d = 0; d < dim; ++d)
-            force[d] = slip[d] = nan;
+            force[d] = slip[d] = shear[d] = nan;
           state.normal_force = state.violation = state.damage = nan;
           state.bond_stiffness = state.bond_threshold = nan;
+          state.normal_traction                       = nan;
           state.shear_damage                          = nan;
           state.mode_mixity                           = nan;
         }
@@ -254,6 +260,7 @@ namespace Debond
       if (!verification.slips.empty())
         {
           add(slip);
+          add(shear);
           for (const ContactScalar &scalar : shear_scalars)
             values.push_back(scalar.value(state, measure));
         }
@@ -399,6 +406,7 @@ namespace Debond
     if (!verification.slips.empty())
       {
         grid.at_points.push_back({"slip", 3});
+        grid.at_points.push_back({"shear_traction", 3});
         for (const ContactScalar &scalar : shear_scalars)
           grid.at_points.push_back({scalar.name});
       }

@@ -100,6 +100,8 @@ def check_columns():
                 close(node + "shear force", row["shear_force_density"],
                       math.hypot(*tau), 1e-8)
                 close(node + "pull", row["normal_force_density"], -sigma, 1e-8)
+                close(node + "by the law", row["normal_traction"], -sigma, 1e-8)
+                close(node + "in shear", row["shear_traction"], math.hypot(*tau), 1e-8)
                 close(node + "mode", row["mode_mixity"],
                       sum(t * t for t in tau) / kt / (2 * energy), 1e-8)
             off = solve(*scene, *more, FROM_REST, *bonds(kn, kt, energy * (1 - 1e-5)))
@@ -356,6 +358,47 @@ def check_profile(name, result, kn, kt, energy):
             close(at + ": pull", row["normal_force_density"], holds * kn * row["u_nu"], 1e-9,
                   scale)
         close(at + ": mode", row["mode_mixity"] * sum(parts), parts[1], 1e-9)
+
+
+def check_tractions():
+    """With Gauss' rule the force of a node is a mean around it; its traction is what the law
+    says of the opening and slip there, of an edge in its middle."""
+    scenes.section("Tractions")
+    kn, kt = 50., 20.
+    rows = solve(*STRIPS, *bonds(kn, kt, 1e3), "Loads/Traction end=0.2; 0.1", *DEGREE_2)["profile"]
+    check("many", len(rows) > 30)
+    scale = max(abs(row["normal_force_density"]) for row in rows)
+    off = 0.
+    for row, before, after in zip(rows, [{}, *rows], [*rows[1:], {}]):
+        at, is_edge = f"at {row['x']}", row["x"] % 2 == 1
+        u, slip = ((.5 * row[key] + .25 * (before.get(key, 0.) + after.get(key, 0.))
+                    if is_edge else row[key] for key in ("u_nu", "slip_x"))
+        close(at + ": shear", row["shear_traction"], kt * abs(slip), 1e-9, scale)
+        if row["state"] == "contact":
+            check(at + ": pressed", row["normal_traction"] == row["normal_force_density"])
+        else:
+            close(at + ": pull", row["normal_traction"], kn * u, 1e-9, scale)
+            off = max(off, abs(row["normal_force_density"] / scale - row["normal_traction"] / scale))
+    check("they differ", off > .01, off)
+    separate = solve(*STRIPS, *bonds(kn, kt, .02), "Contact law/Bond failure=separate", NODAL,
+                     "Contact law/Shear fracture energy=0.03", "Loads/Traction end=0.2; 0.1")
+    for row in separate["profile"]:
+        close(f"separate, at {row['x']}", row["shear_traction"], row["shear_force_density"], 1e-9,
+              scale)
+
+
+def check_all_held():
+    """Without a contact node J is that of the bonds at vertices that are moved along them."""
+    scenes.section("All held")
+    result = solve("Mesh/Lengths=5, 10", "Mesh/Cells=5, 1", "Material/Young modulus=100",
+                   "Material/Poisson ratio=0", SUPPORTS + "Clamped boundaries=",
+                   SUPPORTS + "Displacement right=0; -0.01", SUPPORTS + "Displacement top=0; free",
+                   SUPPORTS + "Displacement bottom=0; free",
+                   SUPPORTS + "Displacement left=free; -0.01", SUPPORTS + "Contact boundary=left",
+                   *bonds(300., 300., 1e3), NODAL)
+    close("J", result.get("functional"), 10 * 300 * .01**2 / 2, 1e-9)
+    check("no note says that bonds decide nothing", not any(
+        "decide nothing" in note for note in result["notes"]), result["notes"])
 
 
 def check_strips():
@@ -806,7 +849,8 @@ def check_errors():
 
 
 scenes.together(*((check_.__name__, check_) for check_ in (
-    check_columns, check_pressed, check_layers, check_softening_column, check_oblique,
-    check_strips, check_three_strips, check_paths, check_mixed_mode, check_limits,
-    check_rings, check_invariances, check_nothing_left, check_errors)))
+    check_columns, check_pressed, check_layers, check_softening_column, check_tractions,
+    check_all_held, check_oblique, check_strips, check_three_strips, check_paths,
+    check_mixed_mode, check_limits, check_rings, check_invariances, check_nothing_left,
+    check_errors)))
 scenes.end()

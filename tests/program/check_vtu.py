@@ -69,7 +69,7 @@ def check_contact(folder, profile, dim, n_faces):
     check("shares", contact.n_cells == dim * n_faces, contact.n_cells)
     check("fields", {*contact.in_cells} == {"bond_state"} and {*at_points} == {
         "displacement", "tangential_force_density", "u_nu", "gap", "normal_force_density",
-        "law_violation", "bond_stiffness", "bond_threshold", "damage", "initial_gap"}, at_points)
+        "normal_traction", "law_violation", "bond_stiffness", "bond_threshold", "damage", "initial_gap"}, at_points)
     for cell, state in enumerate(contact.in_cells["bond_state"]):
         i = corners * cell  # the vertex that the share belongs to
         row = profile.get(place(contact, i), {"state": "held", "u_nu": 0.})
@@ -78,6 +78,8 @@ def check_contact(folder, profile, dim, n_faces):
         near("u_nu", at_points["u_nu"][i], row["u_nu"], 1e-3)
         if len(row) > 2:
             near("force", density[i], row["normal_force_density"])
+            # Bonds are at the nodes, whose forces are those of the law.
+            near("traction", at_points["normal_traction"][i], row["normal_force_density"], 1.)
             check("force everywhere", not any(map(math.isnan, density[i:i + corners])))
         else:
             n_held += 1

@@ -202,7 +202,7 @@ for side, load in ("bottom", "top"), ("top", "bottom"):
     drawn = figures(BENCH, *BONDED, f"Boundary conditions/Contact boundary={side}",
                     "Loads/Traction top=", f"Loads/Traction {load}=0.01*y; 0.002")
     assert [axes.get_ylabel() for axes in drawn["contact"].axes] == [
-        "normal displacement", "normal force density", "slip", "shear force density"]
+        "normal displacement", "normal traction", "slip", "shear traction"]
     profile = picture.read_csv("run/contact_profile.csv")
     slips = dict(zip(profile["x"].round(4), profile["slip_x"]))
     dots = numpy.concatenate([dots.get_offsets() for dots
@@ -212,7 +212,7 @@ for side, load in ("bottom", "top"), ("top", "bottom"):
         near(slip, slips[round(float(x), 4)], 1e-5)
 drawn = figures("bar-3d.prm", *BONDED)
 assert [axes.get_xlabel() for axes in drawn["contact"].axes[-2:]] == [
-    "slip", "shear force density"], drawn["contact"].axes
+    "slip", "shear traction"], drawn["contact"].axes
 
 # Without contact nodes, and without contact.vtu, only the body is drawn.
 for setting in "Mesh/Cells=1, 1", "Output/Contact VTU=false":
@@ -273,7 +273,7 @@ assert view[1, 1] > 0.5 and "load_path" in drawn
 row = picture.read_csv("run/load_path.csv")
 assert {"held", *(f"{state} ({row[state + '_part'][0]:.1%})" for state in (
     "contact", "broken"))} <= set(legend(drawn["contact"])), legend(drawn["contact"])
-assert any("normal force" in axes.get_xlabel() for axes in drawn["contact"].axes)
+assert any("normal traction" in axes.get_xlabel() for axes in drawn["contact"].axes)
 drawn["body"].canvas.draw()
 pixels = numpy.asarray(drawn["body"].canvas.buffer_rgba())[:, :, :3] / 255.
 blue, red = ((abs(pixels - one[:3]) < 0.01).all(axis=2).sum()

@@ -54,6 +54,11 @@ namespace Debond
     /// positive where the foundation pushes, negative where bonds pull.
     double normal_force;
 
+    /// The traction at the node itself, of the same sign: by the law at the
+    /// opening there. Where the law leaves it open, at contact and kinks, it
+    /// is normal_force over the node's measure.
+    double normal_traction = 0.;
+
     /// The forces that the law allows for s of all nodes: the Clarke interval
     /// of the adhesion, and unbounded above (infinity) where s = 0.
     Interval allowed_force;
@@ -158,6 +163,10 @@ namespace Debond
     /// The displacements along the boundary that stretch bonds; none if bonds
     /// do not shear.
     std::vector<dealii::Tensor<1, dim>> slips;
+
+    /// What bonds that shear exert along the boundary on the body at the nodes
+    /// themselves, by the law at the slip there: forces per area.
+    std::vector<dealii::Tensor<1, dim>> shear_tractions;
 
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
     /// or that many times the rounding of one.

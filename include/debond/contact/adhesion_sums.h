@@ -33,6 +33,12 @@ namespace Debond
            const typename AdhesionIntegral<dim>::Barycentric &place,
            const VectorView                                  &s);
 
+  /// That derivative at the place of each node, which has a force of a mean
+  /// around it: of its faces the largest.
+  template <int dim>
+  std::vector<Jump<dim>>
+  node_tractions(const AdhesionIntegral<dim> &phi, const VectorView &s);
+
   /// For each unknown along a tangent the part of their stiffness that bonds in
   /// shear have lost which break by themselves, 0 if there are none.
   template <int dim>

@@ -60,6 +60,23 @@ namespace Debond
 
 
 
+  /// The barycentric coordinates of the k-th coefficient: a vertex, or the
+  /// middle of an edge.
+  template <std::size_t n>
+  std::array<double, n>
+  coefficient_place(const unsigned int k)
+  {
+    std::array<double, n> place = {};
+    if (k < n)
+      place[k] = 1.;
+    else
+      for (const unsigned int end : simplex_edges[k - n])
+        place[end] = 0.5;
+    return place;
+  }
+
+
+
   /// The least and the largest value on a line or a triangle of the polynomial
   /// with these coefficients: at vertices, and of degree 2 where it is
   /// stationary, on an edge or inside.

@@ -15,9 +15,9 @@ namespace Debond
 {
   /**
    * Writes the paper's Figures 5 and 6 as CSV, one row per contact node: x, y[,
-   * z], u_nu, normal_force, normal_force_density, allowed_lower, allowed_upper,
-   * violation, state, tangential_force_x, ... Throws
-   * std::runtime_error naming the file if it cannot be written.
+   * z], u_nu, normal_force, normal_force_density, normal_traction,
+   * allowed_lower, allowed_upper, violation, state, tangential_force_x, ...
+   * Throws std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
   void
