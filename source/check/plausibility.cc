@@ -92,6 +92,9 @@ namespace Debond
     /// node.
     constexpr double least_faces_in_zone = 3.;
 
+    /// What faces may press with, to what all bonds could bear.
+    constexpr double largest_pressure_by_facets = 0.01;
+
     /// Beyond it the strains of linear elasticity are wrong by some percent.
     constexpr double largest_small_gradient = 0.05;
   } // namespace
@@ -165,6 +168,53 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<std::string>
+  sliding_notes(const AdhesionIntegral<dim> &adhesion,
+                const Verification<dim>     &verification,
+                const bool                   is_curved)
+  {
+    // Of what is free the force along the boundary is zero.
+    double along = 0., could_bear = 0., pressed = 0.;
+    for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
+      {
+        const ContactNodeState &node  = verification.nodes[i];
+        const BondScale         bonds = adhesion.points().bonds_at(i);
+        could_bear += adhesion.adhesive_law().bond_strength() * bonds.energy /
+                      bonds.stretch *
+                      adhesion.contact_boundary().nodes[i].measure;
+        if (!node.mode_mixity)
+          along += verification.tangential_forces[i].norm();
+        else if (node.state == BondState::broken_but_closed ||
+                 node.shear_damage == 1.)
+          pressed += std::max(0., node.normal_force);
+      }
+
+    std::vector<std::string> notes;
+    if (along > could_bear && could_bear > 0.)
+      notes.push_back(
+        words("the contact boundary bears ",
+              along,
+              " along itself, its bonds could bear ",
+              could_bear,
+              ": Contact law/Tangential displacement = fixed lets "
+              "nothing slide, not even where bonds are broken; "
+              "bonded lets them shear and break"));
+    if (is_curved && pressed > largest_pressure_by_facets * could_bear)
+      notes.push_back(
+        words("bodies that slide along a curved contact boundary "
+              "press on each other with ",
+              pressed,
+              " where bonds are broken: the flat faces of the "
+              "mesh lock. Give the normals of the smooth boundary "
+              "as Boundary conditions/Foundation normal"));
+    return notes;
+  }
+
+
+
+  template decltype(sliding_notes<2>)           sliding_notes<2>;
+  template decltype(sliding_notes<3>)           sliding_notes<3>;
   template decltype(bond_notes<2>)              bond_notes<2>;
   template decltype(bond_notes<3>)              bond_notes<3>;
   template decltype(faces_in_softening_zone<2>) faces_in_softening_zone<2>;

@@ -307,6 +307,15 @@ namespace Debond
         bond_notes(scene.problem().unknowns().dof_handler().get_triangulation(),
                    result.verification.nodes),
         result.notes);
+    append(sliding_notes(bonds,
+                         result.verification,
+                         scene.supports().normals.empty() &&
+                           is_curved(scene.contact_boundary())),
+           result.notes);
+    double cell_size_at_edge = 0.;
+    for (const LoadPathStep<dim> &step : result.path)
+      cell_size_at_edge =
+        std::max(cell_size_at_edge, step.state.cell_size_at_edge);
     append(plausibility_notes(result.largest,
                               faces_in_softening_zone(scene.problem(),
                                                       scene.adhesion())),

@@ -172,6 +172,57 @@ def check_softening():
         close(f"corner at {corner}", row["displacement_factor"], corner, 1e-8)
 
 
+def check_sliding():
+    """Glue of a M = sqrt(2 100 0.1) = 4.47 that is 50 long bears 224 along itself, by Volkersen a
+    little less. A disc that is turned in a hole of 24 sides slides when its bonds are broken."""
+    scenes.section("Sliding")
+    lap = ["Mesh/Lengths=50, 4", "Mesh/Cells=50, 4", "Mesh/Cuts=y = 2",
+           "Parts/upper end=left: y > 2", "Parts/lower end=right: y < 2",
+           "Material/Young modulus=70000", "Material/Poisson ratio=0",
+           "Boundary conditions/Clamped boundaries=",
+           "Boundary conditions/Roller boundaries=top, bottom",
+           "Boundary conditions/Displacement lower end=0; free",
+           "Boundary conditions/Contact boundary=cut_1", "Contact law/Bond stiffness=100",
+           "Contact law/Bond threshold=", "Contact law/Fracture energy=0.1"]
+    for force, more, is_told in ((-10000, [], True), (-200, [], False),
+                                 (-100, ["Contact law/Tangential displacement=bonded"], False)):
+        result = solve(*lap, f"Loads/Force upper end={force}; 0", *more)
+        told = [note for note in result["notes"] if "Tangential displacement" in note]
+        check(f"{force} {more}", result["status"] == "success" and bool(told) == is_told,
+              (result["status"], result["notes"]))
+    (scenes.directory / "disc.geo").write_text(DISC)
+    turned = ["Mesh/Source=file", "Mesh/File=disc.geo", "Mesh/Cuts=ring | disc",
+              "Boundary conditions/Clamped boundaries=rim",
+              "Material/Young modulus=1000",
+              "Boundary conditions/Displacement middle=-0.1*y; 0.1*x", "Material/Poisson ratio=0.3",
+              "Boundary conditions/Contact boundary=cut_1",
+              "Contact law/Tangential displacement=bonded", "Contact law/Law=bilinear",
+              "Contact law/Bond stiffness=1000", "Contact law/Bond strength=5",
+              "Contact law/Fracture energy=0.02", "Load path/Displacement factors=0.1, 1",
+              NO_HEALING]
+    for more, is_told in (([], True), (["Boundary conditions/Foundation normal=x; y"], False)):
+        result = solve(*turned, *more)
+        told = [note for note in result["notes"] if "Foundation normal" in note]
+        check(f"turned {more}", result["status"] == "success" and bool(told) == is_told,
+              (result["status"], result["errors"], result["notes"]))
+
+
+DISC = """SetFactory("OpenCASCADE");
+Disk(1) = {0, 0, 0, 2}; Disk(2) = {0, 0, 0, 1}; Disk(3) = {0, 0, 0, 0.3};
+BooleanDifference(10) = { Surface{1}; Delete; }{ Surface{2}; };
+BooleanDifference(11) = { Surface{2}; Delete; }{ Surface{3}; Delete; };
+Coherence;
+Mesh.MeshSizeMin = 0.26; Mesh.MeshSizeMax = 0.26;
+Physical Surface("ring") = {10}; Physical Surface("disc") = {11};
+middle() = Curve In BoundingBox {-0.31, -0.31, -1, 0.31, 0.31, 1};
+Physical Curve("middle") = {middle()};
+whole() = Curve In BoundingBox {-2.1, -2.1, -1, 2.1, 2.1, 1};
+inner() = Curve In BoundingBox {-1.1, -1.1, -1, 1.1, 1.1, 1};
+whole() -= {inner()};
+Physical Curve("rim") = {whole()};
+"""
+
+
 def check_limits():
     scenes.section("Limits")
     strips = [*JOINT, "Material/Young modulus=2000", "Material/Young modulus upper=1000",
@@ -435,6 +486,7 @@ def check_errors():
 
 
 scenes.together(*((check_.__name__, check_) for check_ in (
-    check_different_strips, check_twice_the_half, check_softening, check_limits, check_arms,
+    check_different_strips, check_twice_the_half, check_softening, check_sliding, check_limits,
+    check_arms,
     check_supports, check_refined, check_edges, check_rings, check_errors)))
 scenes.end()

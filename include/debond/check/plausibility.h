@@ -48,7 +48,18 @@ namespace Debond
   /// elasticity, or that faces are too large for bonds that soften.
   std::vector<std::string>
   plausibility_notes(const LargestValues &largest,
-                     const double         faces_in_softening_zone);
+                     const double         faces_in_softening_zone,
+                     const double         cell_size_at_edge);
+
+  /// Returns notes on bodies that do not slide along their contact boundary as
+  /// their bonds would let them: nodes that are fixed along it bear more than
+  /// bonds could, or flat faces of a curved boundary press on each other where
+  /// bonds are broken by slip.
+  template <int dim>
+  std::vector<std::string>
+  sliding_notes(const AdhesionIntegral<dim> &adhesion,
+                const Verification<dim>     &verification,
+                const bool                   is_curved);
 
   /// Returns notes on bonds that are hardly meant: there are none, all are
   /// broken at rest, or none breaks before the body has moved by its size. All
