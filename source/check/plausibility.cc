@@ -135,7 +135,7 @@ namespace Debond
     double least_threshold = std::numeric_limits<double>::infinity();
     bool   are_all_broken  = true;
     for (const ContactNodeState &node : nodes)
-      if (node.bond_stiffness > 0.)
+      if (node.branch != BondState::free)
         {
           const double gap = node.u_nu - node.s;
           least_threshold  = std::min(least_threshold, node.bond_threshold);

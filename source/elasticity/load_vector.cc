@@ -277,9 +277,19 @@ namespace Debond
                            measure};
               }
           }
-      if (notes != nullptr)
-        for (const auto &[unused, worst] : worst_faces)
+      if (notes == nullptr)
+        return;
+      // Other ranks may have all faces of a load.
+      for (const auto &[unused, tractions] : loads.tractions)
+        for (const Traction<dim> &traction : tractions)
+          worst_faces[traction.entry];
+      for (auto &[unused, worst] : worst_faces)
+        {
+          worst.size =
+            dealii::Utilities::MPI::sum(worst.size,
+                                        dof_handler.get_communicator());
           add_note(worst, symmetry, *notes);
+        }
     }
 
 

@@ -229,7 +229,8 @@ namespace Debond
   Scene<dim>::add_notes()
   {
     const ContactBoundary<dim> &boundary = contact_boundary();
-    if (boundary.nodes.empty() && !boundary_conditions.contact.empty())
+    if (boundary.nodes.empty() && boundary.held_vertices.empty() &&
+        !boundary_conditions.contact.empty())
       body_notes.push_back(
         "the contact boundary has no contact node, and contact and bonds "
         "decide nothing: all its vertices are held by supports, or as corners "

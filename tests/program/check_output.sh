@@ -80,6 +80,9 @@ notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Bond threshold=
   grep -q "^bonds break beyond an opening of 2, more than the body" || fail "size: $(cat log)"
 notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Bond stiffness=0" |
   grep -qx "no node of the contact boundary has bonds" || fail "no bonds: $(cat log)"
+# Bonds that are rigid at first have no stiffness.
+notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Law=curve" \
+  --set "Contact law/Curve=0:0.1, 0.01:0" | grep "bonds" && fail "rigid at first: $(cat log)"
 notes --set "Mesh/Cells=40, 4" --set "$small" --set Constants/a=1 \
   --set Constants/b=3*a --set "Loads/Constants=c = 2, d = c" >idle
 [ "$(cat idle)" = "no effect of the constant b: nothing uses it

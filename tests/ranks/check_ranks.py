@@ -97,6 +97,8 @@ SCENES = [
      MM + ["Contact law/Initial gap=1e-4*(1 + x)", "Probes/end=0.37, 0.02"]),
     ("temperature", "benchmark-40x4",
      MM + ["Material/Thermal expansion=1e-5", "Loads/Temperature change=100*x"]),
+    # A note speaks of the load on all faces.
+    ("traction that jumps", "benchmark-40x4", MM + ["Loads/Traction top=0; if(x < 0.123, 0, 1)"]),
     # A note speaks of the body's size, of which each rank has a part.
     ("square", "benchmark-40x4", MM + [
         "Mesh/Lengths=1, 1", "Mesh/Cells=8, 8", "Contact law/Bond threshold=0.6",
