@@ -2,6 +2,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/owned_cells.h>
 
@@ -103,7 +104,8 @@ namespace Debond
 
   std::vector<std::string>
   plausibility_notes(const LargestValues &largest,
-                     const double         faces_in_softening_zone)
+                     const double         faces_in_softening_zone,
+                     const double         cell_size_at_edge)
   {
     std::vector<std::string> notes;
     const auto               add = [&notes](const auto &...parts) {
@@ -122,6 +124,13 @@ namespace Debond
           " faces of the contact boundary, which should be three at least: "
           "fronts move in jumps. Take smaller cells there, or a lower strength "
           "with the same energy");
+    if (cell_size_at_edge > Tolerance::cell_size_at_edge)
+      // What doc/guide/load-path.md measures.
+      add("E*/a is about ",
+          1. / cell_size_at_edge,
+          " cells where bonds end: a path breaks late there, by up to some ",
+          70. * std::pow(cell_size_at_edge, 0.75),
+          " %. Take smaller cells there");
     return notes;
   }
 

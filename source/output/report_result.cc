@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
-#include <debond/base/tolerances.h>
 #include <debond/output/report.h>
 
 #include <algorithm>
@@ -575,16 +574,6 @@ namespace Debond
       for (const LoadPathStep<dim> &step : result.path)
         size = std::max(size, step.state.cell_size_at_edge);
       record.add("/load_path/cell_size_at_edge", size);
-      if (size > 0.)
-        record.line("edge of the bonds",
-                    "E*/a is about ",
-                    std::setprecision(3),
-                    1. / size,
-                    " cells there",
-                    size > Tolerance::cell_size_at_edge ?
-                      ": a path breaks late. Take smaller cells there, or "
-                      "let the bonds end with a part of the boundary" :
-                      "");
     }
   } // namespace
 

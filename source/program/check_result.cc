@@ -8,6 +8,7 @@
 #include <debond/input/expression.h>
 #include <debond/program/check_result.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -318,7 +319,8 @@ namespace Debond
         std::max(cell_size_at_edge, step.state.cell_size_at_edge);
     append(plausibility_notes(result.largest,
                               faces_in_softening_zone(scene.problem(),
-                                                      scene.adhesion())),
+                                                      scene.adhesion()),
+                              cell_size_at_edge),
            result.notes);
     result.displacement_error =
       error_of(verification.exact_displacement, scene, result.solve.u);

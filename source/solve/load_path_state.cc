@@ -48,6 +48,9 @@ namespace Debond
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &boundary = unknowns.contact().boundary();
+      // They share their load over another length.
+      if (adhesion.softens())
+        return 0.;
 
       // By cell the stiffness of bonds times the size of a face where some of
       // its nodes have a bond and others have none: there a front may be, and

@@ -45,7 +45,8 @@ namespace Debond
 
   /// Returns notes for the user on a result that is right as the solution of
   /// the discrete problem: that displacements are too large for linear
-  /// elasticity, or that faces are too large for bonds that soften.
+  /// elasticity, or that faces are too large for bonds that soften or, by the
+  /// largest LoadPathState::cell_size_at_edge, that break at once.
   std::vector<std::string>
   plausibility_notes(const LargestValues &largest,
                      const double         faces_in_softening_zone,

@@ -61,8 +61,8 @@ namespace Debond
     std::vector<dealii::Point<dim>> fronts; ///< see fronts()
 
     /// The largest size over E* / a of the contact faces where bonds that hold
-    /// meet bonds that do not, or none; 0 if there are no such faces. E* is E /
-    /// (1 - nu^2), a the stiffness of the bonds.
+    /// meet bonds that do not, or none; 0 if there are no such faces, or bonds
+    /// soften. E* is E / (1 - nu^2), a the stiffness of the bonds.
     double cell_size_at_edge;
 
     double dissipated_energy; ///< by bonds that do not heal
