@@ -127,11 +127,14 @@ namespace Debond
         , symmetry(of.problem.unknowns().symmetry())
         , s(of.problem.unknowns().contact().trace(u))
         , load_factor(factors.loads)
-        , has_volume_loads(
-            of.loads.body_force || of.loads.temperature_change ||
-            (of.dead_loads != nullptr && of.dead_loads->body_force))
+        , heat_factor(of.problem.fields().heat_factor(factors))
+        , temperature_change(of.loads.temperature_change ?
+                               of.loads.temperature_change :
+                               of.dead_loads.temperature_change)
+        , has_volume_loads(of.loads.body_force || of.dead_loads.body_force ||
+                           temperature_change)
         , largest_s(s.template lpNorm<Eigen::Infinity>())
-        , n_stresses(degree == 2 || of.loads.temperature_change ? dim + 1 : 1)
+        , n_stresses(degree == 2 || temperature_change ? dim + 1 : 1)
         , displacement(of.problem.unknowns().cartesian_displacement(u, factors))
         , at_points(of.problem.fields(),
                     displacement,
@@ -310,13 +313,13 @@ namespace Debond
               at_loads.JxW(q) * circumference(symmetry, point);
             if (of.loads.body_force)
               force += load_factor * around * of.loads.force_at(point);
-            if (of.dead_loads != nullptr && of.dead_loads->body_force)
-              force += around * of.dead_loads->force_at(point);
-            if (!of.loads.temperature_change)
+            if (of.dead_loads.body_force)
+              force += around * of.dead_loads.force_at(point);
+            if (!temperature_change)
               continue;
-            const double change =
-              at_loads.JxW(q) / at_loads.measure() * load_factor *
-              field_value(*of.loads.temperature_change, point);
+            const double change = at_loads.JxW(q) / at_loads.measure() *
+                                  heat_factor *
+                                  field_value(*temperature_change, point);
             for (unsigned int v = 0; v <= dim; ++v)
               heat[v] += (dim + 1.) *
                          ((dim + 2.) * at_loads.shape_value(v, q) - 1.) *
@@ -492,9 +495,8 @@ namespace Debond
             for (unsigned int v = 0; v < dim; ++v)
               r -= (degree == 1 ? 1. / dim : coordinates[v]) *
                    (stress_at(face.cell, face.in_cell[v]).whole * normal);
-            r += load_factor * of.loads.traction(id, point, normal);
-            if (of.dead_loads != nullptr)
-              r += of.dead_loads->traction(id, point, normal);
+            r += load_factor * of.loads.traction(id, point, normal) +
+                 of.dead_loads.traction(id, point, normal);
             if (is_contact)
               {
                 std::array<double, dim> there;
@@ -628,14 +630,15 @@ namespace Debond
         return r;
       }
 
-      const EstimatedProblem<dim>    of;
-      const unsigned int             degree;
-      const ContactBoundary<dim>    &boundary;
-      const Symmetry                 symmetry;
-      const Eigen::VectorXd          s;
-      const double                   load_factor;
-      const bool                     has_volume_loads;
-      const double                   largest_s;
+      const EstimatedProblem<dim> of;
+      const unsigned int          degree;
+      const ContactBoundary<dim> &boundary;
+      const Symmetry              symmetry;
+      const Eigen::VectorXd       s;
+      const double                load_factor, heat_factor;
+      const std::shared_ptr<const dealii::Function<dim>> temperature_change;
+      const bool                                         has_volume_loads;
+      const double                                       largest_s;
       const unsigned int             n_stresses; ///< that differ in a cell
       const DofVector                displacement;
       CellStresses<dim>              at_points; ///< of strain_rule()

@@ -192,19 +192,24 @@ namespace Debond
       return true;
     });
     notes.clear();
-    const MPI_Comm      ranks    = elastic_unknowns.communicator();
-    const Symmetry      symmetry = elastic_unknowns.symmetry();
+    const MPI_Comm      ranks        = elastic_unknowns.communicator();
+    const Symmetry      symmetry     = elastic_unknowns.symmetry();
+    const bool          heat_is_dead = dead_loads.temperature_change != nullptr;
     std::vector<double> temperatures;
     DofVector           applied_forces, dead_forces;
     on_all_ranks(ranks, [&]() {
       temperatures   = temperature_changes(dofs.get_triangulation(),
-                                         loads,
+                                         heat_is_dead ? dead_loads : loads,
                                          dofs.get_fe().degree);
       applied_forces = load_vector(dofs, loads, symmetry, &notes);
-      add_thermal_forces(
-        dofs, materials, temperatures, symmetry, applied_forces);
-      if (dead_loads.body_force || !dead_loads.tractions.empty())
+      if (dead_loads.body_force || !dead_loads.tractions.empty() ||
+          heat_is_dead)
         dead_forces = load_vector(dofs, dead_loads, symmetry, &notes);
+      add_thermal_forces(dofs,
+                         materials,
+                         temperatures,
+                         symmetry,
+                         heat_is_dead ? dead_forces : applied_forces);
     });
     notes = union_of_ranks(notes, ranks);
     add_over_ranks(applied_forces, ranks);
@@ -213,8 +218,12 @@ namespace Debond
         add_over_ranks(dead_forces, ranks);
         applied_forces += dead_forces;
       }
-    elastic_fields = std::make_unique<ElasticFields<dim>>(
-      elastic_unknowns, materials, applied_forces, temperatures, dead_forces);
+    elastic_fields = std::make_unique<ElasticFields<dim>>(elastic_unknowns,
+                                                          materials,
+                                                          applied_forces,
+                                                          temperatures,
+                                                          dead_forces,
+                                                          heat_is_dead);
 
     const auto load_with = [&](const LoadFactors factors) {
       DofVector load =

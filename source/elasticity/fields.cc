@@ -44,7 +44,8 @@ namespace Debond
                                     const ByRegion<Material>   &materials,
                                     const DofVector            &applied_forces,
                                     const std::vector<double>  &changes,
-                                    const DofVector            &dead_forces)
+                                    const DofVector            &dead_forces,
+                                    const bool                  heat_is_dead)
     : elastic_unknowns(unknowns)
     , materials(materials)
     , stiffness(materials.transformed(
@@ -57,6 +58,7 @@ namespace Debond
     , live_forces(applied_forces)
     , dead_forces(dead_forces)
     , temperature_changes(changes)
+    , heat_is_dead(heat_is_dead)
   {
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
@@ -233,7 +235,7 @@ namespace Debond
                                   const dealii::Quadrature<dim> &rule)
     : fields(fields)
     , cartesian_displacement(cartesian_displacement)
-    , load_factor(factors.loads)
+    , heat_factor(fields.heat_factor(factors))
     , shape(fields.unknowns().dof_handler().get_fe().base_element(0),
             rule,
             fields.unknowns().symmetry())
@@ -319,7 +321,7 @@ namespace Debond
   double
   CellStresses<dim>::temperature_change(const unsigned int q) const
   {
-    return load_factor *
+    return heat_factor *
            fields.temperature_change(cell, shape.get_quadrature().point(q));
   }
 

@@ -129,7 +129,7 @@ namespace Debond
     table.bind(
       "Load path/Dead loads",
       load_path.dead_loads,
-      "What stays as it is whatever the factor: names of boundaries with a traction, or body force");
+      "What stays as it is whatever the factor: names of boundaries with a traction, body force, or temperature change");
     table.bind(
       "Load path/Bonds heal",
       load_path.bonds_heal,
@@ -155,6 +155,8 @@ namespace Debond
                      LoadPathParameters      &load_path,
                      ParameterTable          &table)
   {
+    const std::string branch     = "Load path/Global branch";
+    load_path.asks_for_branch    = table.is_set(branch);
     std::vector<double> &factors = load_path.factors;
     std::vector<double> &others  = load_path.displacement_factors;
     if (others.empty())
@@ -166,8 +168,7 @@ namespace Debond
           table.reject(path, "the scene prescribes no displacement");
         // It takes up to twenty times as long as the path itself, which only
         // those who ask for it should wait for.
-        const std::string branch = "Load path/Global branch";
-        if (!table.is_set(branch))
+        if (!load_path.asks_for_branch)
           table.derive(branch, "none", path);
         if (factors.empty())
           factors.push_back(1.);
@@ -198,6 +199,8 @@ namespace Debond
     std::set<std::string> loaded;
     if (!loads.body_force.empty())
       loaded.insert("body force");
+    if (!loads.temperature_change.empty())
+      loaded.insert("temperature change");
     for (const SurfaceLoad &load : loads.on_boundaries())
       loaded.insert(load.boundary);
     const std::string dead_loads = "Load path/Dead loads";
@@ -210,6 +213,14 @@ namespace Debond
                           "" :
                           ", but " +
                             join({loaded.begin(), loaded.end()}, ", ")));
+    if (vary(factors) && (supports.displacements.empty() || !others.empty()) &&
+        std::includes(load_path.dead_loads.begin(),
+                      load_path.dead_loads.end(),
+                      loaded.begin(),
+                      loaded.end()))
+      table.reject("Load path/Factors",
+                   "they multiply nothing: there is no load but dead ones, and "
+                   "no prescribed displacement without factors of its own");
   }
 
 

@@ -585,7 +585,7 @@ namespace Debond
     if (parameters.arc && path.has_no_failure())
       followed.arc = path.find_arc();
     followed.result = path.take_result();
-    if (wants_branch && !path.has_global_branch())
+    if (parameters.asks_for_branch && wants_branch && !path.has_global_branch())
       followed.result.notes.push_back(
         "There is no global branch: it is for bonds that heal, a direct linear "
         "solver and bodies that not only bonds and the foundation hold.");

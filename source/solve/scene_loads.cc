@@ -26,7 +26,8 @@ namespace Debond
     if (!parameters.body_force.empty() && is_wanted("body force"))
       loads.body_force =
         make_function<dim>(parameters.body_force, parameters.constants);
-    if (!parameters.temperature_change.empty() && !wants_dead)
+    if (!parameters.temperature_change.empty() &&
+        is_wanted("temperature change"))
       loads.temperature_change =
         make_function<dim>(parameters.temperature_change,
                            parameters.constants,

@@ -337,6 +337,17 @@ def check_loads():
             "functional"], -0.5 * work, 1e-9)
 
 
+def check_forgotten():
+    """The paper's strip may leave out modulus and bonds, a body of another length has notes."""
+    for lengths, given, expected in (
+            ("0.4, 0.1", (), 0), ("100, 10", (), 2), ("100, 10", ("Contact law/Law=none",), 1),
+            ("100, 10", ("Material/Young modulus=7e4", "Contact law/Bond stiffness=5"), 0)):
+        notes = solve("Mesh/Cells=10, 2", "Mesh/Lengths=" + lengths, "Loads/Traction top=0; 1e-6",
+                      *given)["notes"]
+        check(f"{lengths}, {given}", sum("default one" in note for note in notes) == expected,
+              notes)
+
+
 def check_heated(dim, hypothesis):
     """A body that expands freely, and one between rollers, which cannot."""
     E, nu, alpha, change, volume = 70., 0.3, 1e-3, 4., 2.
@@ -360,6 +371,19 @@ def check_heated(dim, hypothesis):
     check("a body that cannot expand does not move", held["largest_displacement"] <= 1e-15)
     for side, force in (("left", 2. * pressure), ("right", -2. * pressure)):
         close(f"force of {side}", held["reactions"][side][0], force, 1e-12)
+    # It stays as it is while the body is stretched along x and let go again.
+    path = solve(*body, "Boundary conditions/Roller boundaries=left, bottom" + back,
+                 "Boundary conditions/Displacement right=0.01; free" + "; free" * (dim == 3),
+                 "Load path/Factors=1, 0.5, 0", "Load path/Dead loads=temperature change")
+    out_of_plane = dim == 2 and not is_plane_stress
+    modulus, part = (E / (1. - nu * nu), 1. + nu) if out_of_plane else (E, 1.)
+    for row in path["path"]:
+        close("heat that stays", row["reaction_right_x"],
+              2. * modulus * (0.01 * row["factor"] - part * alpha * change), 1e-11, stress)
+    sigma = -modulus * part * alpha * change
+    across = (nu * sigma - stress) * out_of_plane
+    close("and its stress", path["largest_von_mises"],
+          math.sqrt(sigma * sigma + across * across - sigma * across), 1e-11, stress)
 
 
 def check_loosened(dim, L, unit, degree, is_moved):
@@ -698,6 +722,7 @@ scenes.together(
     *((test.__name__, test, *arguments) for test, *arguments in (
         [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
         [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],
+        [check_forgotten],
         [check_heated, 2, "plane stress"], [check_heated, 2, "plane strain"],
         [check_heated, 3, "plane stress"])))
 scenes.end()

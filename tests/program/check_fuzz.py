@@ -87,7 +87,8 @@ Loads/Traction 5=0; 0.1""",
          """Dimension=3|Mesh/Source=file|Mesh/File=solid.msh
 Boundary conditions/Clamped boundaries=|Boundary conditions/Contact boundary=bottom, top
 Contact law/Bond stiffness bottom=10|Contact law/Bond threshold top=0.01*(1+x)
-Contact law/Initial gap top=0.001|Loads/Body force=0; 0.1; 0|Load path/Factors=0.5, 1, 0
+Contact law/Initial gap top=0.001|Loads/Body force=0; 0.1; 0|Loads/Pressure top=0.01
+Load path/Factors=0.5, 1, 0
 Load path/Dead loads=body force"""]
 ODD = ["-1", "0", "1e300", "nan", "x", "9" * 20, "4294967297", "2", "7", "", '"', "0.5",
        "4.1 1 8"]

@@ -48,7 +48,7 @@ namespace Debond
     const BoundaryConditions    &conditions;
     const Supports<dim>         &supports;
     const Loads<dim>            &loads;
-    const Loads<dim>            *dead_loads = nullptr; ///< if there are any
+    const Loads<dim>             dead_loads = {};
   };
 
 

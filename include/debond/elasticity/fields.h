@@ -30,12 +30,13 @@ namespace Debond
     /// nodal forces of all loads, at every degree of freedom; @p dead_forces:
     /// those of them that do not grow with the load factor, empty for none.
     /// @p temperature_changes: of each point of strain_rule() in each active
-    /// cell; none if empty.
+    /// cell, none if empty; @p heat_is_dead: they stay as they are, too.
     ElasticFields(const ElasticUnknowns<dim> &unknowns,
                   const ByRegion<Material>   &materials,
                   const DofVector            &applied_forces,
                   const std::vector<double>  &temperature_changes = {},
-                  const DofVector            &dead_forces         = {});
+                  const DofVector            &dead_forces         = {},
+                  const bool                  heat_is_dead        = false);
 
     const Material &
     material(const Cell &cell) const
@@ -94,6 +95,13 @@ namespace Debond
     temperature_change(const Cell               &cell,
                        const dealii::Point<dim> &unit_point) const;
 
+    /// What multiplies it.
+    double
+    heat_factor(const LoadFactors factors) const
+    {
+      return heat_is_dead ? 1. : factors.loads;
+    }
+
     const ElasticUnknowns<dim> &
     unknowns() const
     {
@@ -132,6 +140,7 @@ namespace Debond
     DofVector                               live_forces;
     DofVector                               dead_forces; ///< or empty
     std::vector<double>                     temperature_changes;
+    bool                                    heat_is_dead;
   };
 
 
@@ -209,7 +218,7 @@ namespace Debond
 
     const ElasticFields<dim> &fields;
     const DofVector          &cartesian_displacement;
-    const double              load_factor;
+    const double              heat_factor;
     SimplexValues<dim>        shape;
 
     // Of the cell.

@@ -34,6 +34,7 @@ namespace Debond
 
     /// Loads without a factor: names of boundaries with loads, "body force".
     std::set<std::string> dead_loads;
+    bool                  asks_for_branch = false; ///< the scene itself does
 
     /// Says whether bonds return to branches that they have left. Otherwise
     /// there is no global branch, as states depend on those before.

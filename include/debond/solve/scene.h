@@ -141,7 +141,7 @@ namespace Debond
               boundary_conditions,
               body_supports,
               body_loads,
-              &body_dead_loads};
+              body_dead_loads};
     }
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
