@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/numbers.h>
 
+#include <debond/base/entry_error.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 
@@ -119,9 +120,11 @@ namespace Debond
     // determinant means opposite normals (or three in one plane), not
     // neighbours.
     if (std::abs(dealii::determinant(frame)) < Tolerance::dependent_normals)
-      throw std::invalid_argument(
-        "The normals of the contact sides that meet at a vertex are linearly "
-        "dependent.");
+      throw EntryError(
+        "Boundary conditions/Contact boundary",
+        "contact sides that meet at a vertex have opposite normals, or three "
+        "in one plane; contact is with a rigid foundation, that of the faces "
+        "of a crack with each other is Mesh/Cuts");
     return frame;
   }
 

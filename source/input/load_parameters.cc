@@ -233,7 +233,8 @@ namespace Debond
                     return error.find("Physical Curve") != std::string::npos;
                   });
     for (const std::string &name : names)
-      if (boundaries.count(name) == 0)
+      if (boundaries.count(name) == 0 &&
+          (body.regions().count(name) > 0 || !table.is_set("Parts/" + name)))
         table.reject(
           path,
           "the body has no boundary " + name +
@@ -243,7 +244,7 @@ namespace Debond
                "" :
                "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6") +
             (body.inner_groups.count(name) > 0 ?
-               "; the group of this name lies inside the body or away from it" :
+               "; the group of this name lies inside the body or away from it; bodies that come off each other there are its regions on both sides, with Mesh/Cuts" :
              body.regions().count(name) > 0 ?
                "; the region of this name is a piece of the body, where Parts has pieces of a boundary, such as bottom: x < 1" :
                ""));

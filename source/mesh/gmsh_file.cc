@@ -109,16 +109,28 @@ namespace Debond
 
 
 
-    /// The errors that Gmsh has logged, in one line.
+    /// The errors that Gmsh has logged, in one line, but for those of options
+    /// and pictures, which leave the geometry as it is.
     std::string
     errors_of_gmsh()
     {
       std::vector<std::string> log, found;
       gmsh::logger::get(log);
       for (const std::string &line : log)
-        if (line.rfind("Error: ", 0) == 0)
+        if (std::regex_search(
+              line, std::regex("^Error: (?!Unknown .* option|.* requires )")))
           found.push_back(printable(line.substr(7)));
       return join(found, "; ");
+    }
+
+
+
+    /// Throws if there are any.
+    void
+    check_log()
+    {
+      if (!errors_of_gmsh().empty())
+        throw std::runtime_error("errors of Gmsh");
     }
 
 
@@ -251,7 +263,10 @@ namespace Debond
       gmsh::option::setNumber("Mesh.SwitchElementTags", is_old ? 1 : 0);
       // Their partitions are numbers of elements, which it would sort by them.
       gmsh::option::setNumber("Mesh.PartitionConvertMsh2", 0);
+      // What it throws in a thread of its own would end the process.
+      gmsh::option::setNumber("General.AbortOnError", 0);
       gmsh::open(file_name);
+      check_log();
       gmsh::vectorpair entities;
       gmsh::model::getEntities(entities);
       // It goes on, with points of no number and without groups.
@@ -288,6 +303,7 @@ namespace Debond
       for (const auto &[dimension, entity] : entities)
         if (dimension >= dim - 1)
           add_elements(dimension, entity, is_old, file);
+      check_log();
       return file;
     }
 

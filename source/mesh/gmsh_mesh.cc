@@ -222,6 +222,9 @@ namespace Debond
           fail("an STL file has a surface alone; fill it in a .geo file, by "
                "Merge \"name.stl\"; Surface Loop(1) = Surface{:}; "
                "Volume(1) = {1};");
+        if (cells.empty() && faces.empty() &&
+            boost::iends_with(file_name, ".mesh"))
+          fail("it is not of Medit's format, for which Gmsh takes .mesh");
         if (cells.empty())
           fail(
             std::string("the mesh has no ") +
@@ -293,7 +296,9 @@ namespace Debond
                 fail(element(c) + " is flat" +
                      (cells[c].corners.size() == dim + 1 ?
                         "" :
-                        ", or its centre does not see all of its faces"));
+                        ", or its centre does not see all of its faces") +
+                     "; bodies with a layer of such cells between them are "
+                     "one mesh without it, with Mesh/Cuts");
               if (volume < 0.)
                 std::swap(corners[dim - 1], corners[dim]);
               simplices.push_back({{}, c});
@@ -417,7 +422,9 @@ namespace Debond
             fail("the mesh is of two bodies or more: " + element(c) +
                  " is not connected through faces with " + element(0) +
                  (n_twins == 0 ?
-                    "" :
+                    "; bodies that touch or are glued to each other are one "
+                    "mesh with Mesh/Cuts, and the gap between them is Contact "
+                    "law/Initial gap" :
                     words("; there are ", n_twins, " nodes", on_one_place)));
       }
 
@@ -482,9 +489,10 @@ namespace Debond
                   {
                     std::ostringstream place;
                     place << places[i];
-                    fail(element(cell) +
-                         " has a hanging node on its face, at (" + place.str() +
-                         ")");
+                    fail(
+                      element(cell) + " has a hanging node on its face, at (" +
+                      place.str() +
+                      "); BooleanFragments in Gmsh makes one mesh of bodies");
                   }
               }
           }

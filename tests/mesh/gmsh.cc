@@ -273,6 +273,7 @@ test_other_formats()
   error(with("1 0 0 0 0\n", "1 0 0 0\n0\n", entities), "test.msh", 0.);
   error("    -1\n  2467\n    -1\n", "test.unv", 0.);
   error("*HEADING\n", "test.inp", 0.);
+  error("MFEM mesh v1.0\n\ndimension\n2\n", "test.mesh", 0.);
   error("solid\nendsolid\n", "empty.stl", 0.);
   error("Save \"other.msh\";\nExit;\n", "test.geo", 0.);
   const std::string plane = "SetFactory(\"OpenCASCADE\");\n"
@@ -296,6 +297,24 @@ test_other_formats()
     }
   check("Gmsh's memory is limited",
         words.find("a memory of 0.0 GiB is not enough") != std::string::npos);
+  try
+    {
+      read<2>("Point(1) = {0, 0, 0, 1};\nPoint(2) = {1, 0, 0, 1};\n"
+              "Point(3) = {0, 1, 0, 1};\nLine(1) = {1, 2};\n"
+              "Line(2) = {2, 3};\nCurve Loop(1) = {1, 2};\n"
+              "Plane Surface(1) = {1};\n",
+              "test.geo");
+    }
+  catch (const std::invalid_argument &said)
+    {
+      words = said.what();
+    }
+  check("an outline that is not closed",
+        words.find("closed loop") != std::string::npos);
+  check("options that Gmsh does not know and pictures change no geometry",
+        read<2>("Mesh.NoSuchOption = 2;\n" + plane + "Print \"plane.png\";\n",
+                "test.geo")
+            ->n_cells() > 0);
   const std::string tetrahedron =
     "solid\n"
     "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\n"
