@@ -54,6 +54,8 @@ namespace Debond
        "inertia (weight is Loads/Body force)"},
       {"(large|finite) (displ|strain|rot|def)", "large displacements"},
       {"penalt", "penalty: contact is exact"},
+      {"moment|torque",
+       "moments as loads: a traction that varies, such as 3*(y - 1); 0, has one"},
       {"fatigue", "fatigue"}};
     for (const auto &[words, what] : absent)
       if (std::regex_search(path, std::regex(words, std::regex::icase)))

@@ -51,6 +51,9 @@ namespace Debond
             throw std::invalid_argument("behind '" + text.substr(0, i) +
                                         "' the second comparison is one with 0 "
                                         "or 1: write a < x && x < b");
+          if (c == '*' && text.c_str()[i + 1] == '*')
+            throw std::invalid_argument("'" + text.substr(0, i) +
+                                        "' has **; powers are x^2");
           if (c == '(')
             {
               has_arguments.push_back(!name.empty());

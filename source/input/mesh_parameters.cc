@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace Debond
 {
@@ -296,14 +297,19 @@ namespace Debond
       if (!body)
         return nullptr;
       attempt("Mesh/Cuts", {"Dimension"}, [&]() {
+        const auto cut = std::exchange(body, nullptr);
         for (const std::string &text :
              dealii::Utilities::split_string_list(parameters.cuts, ','))
           {
-            body->cuts.push_back(
-              make_cut(*body, text, parameters.box.rotation, constants));
-            body->cuts.back().name = "cut_" + std::to_string(body->cuts.size());
+            cut->cuts.push_back(
+              make_cut(*cut, text, parameters.box.rotation, constants));
+            cut->cuts.back().name = "cut_" + std::to_string(cut->cuts.size());
           }
+        body = cut;
       });
+      // Names of boundaries would be wrong after a cut that is none.
+      if (!body)
+        return nullptr;
       std::vector<Part<dim>> made;
       for (const auto &part : parts)
         attempt("Parts/" + part.first, {"Dimension"}, [&]() {

@@ -259,47 +259,34 @@ namespace Debond
 
 
 
-    /// Checks the names in entries that contact boundaries have of their own.
+    /// Checks bonds that vary, as the scene gives them, and the names in
+    /// entries that contact boundaries have of their own.
     void
-    check_contact_boundaries(const Parameters &p, ParameterTable &table)
+    check_bonds(const Parameters &p, ParameterTable &table)
     {
       for (const auto &[path, unused] : table.locations())
         for (const std::string name : {"Bond stiffness",
                                        "Bond threshold",
                                        "Bond strength",
                                        "Fracture energy",
+                                       "Traction factor",
                                        "Tangential displacement"})
-          if (const std::string prefix = "Contact law/" + name + " ";
-              path.compare(0, prefix.size(), prefix) == 0 &&
-              !table.get(path).empty())
+          if (const std::string entry = "Contact law/" + name;
+              boost::starts_with(path + ' ', entry + ' ') && table.is_set(path))
             {
-              if (p.body)
-                check_names(path, {path.substr(prefix.size())}, *p.body, table);
+              if (p.body && path != entry && !table.get(path).empty())
+                check_names(path,
+                            {path.substr(entry.size() + 1)},
+                            *p.body,
+                            table);
+              if (name != "Tangential displacement")
+                check_expression(path,
+                                 table.get(path),
+                                 p.dimension,
+                                 1,
+                                 p.loads.constants,
+                                 table);
             }
-    }
-
-
-
-    /// Checks bonds that vary.
-    void
-    check_bonds(const Parameters &p, ParameterTable &table)
-    {
-      const std::string stiffness = p.law.stiffness_entry;
-      const std::string threshold = "Contact law/Bond threshold";
-      const auto        check     = [&](const std::string &path,
-                             const std::string &expression) {
-        check_expression(
-          path, expression, p.dimension, 1, p.loads.constants, table);
-      };
-      check(stiffness, p.law.stiffness);
-      check(threshold, p.law.threshold);
-      for (const auto &[name, bonds] : p.law.boundaries)
-        {
-          if (table.is_set(stiffness + " " + name))
-            check(stiffness + " " + name, bonds.stiffness);
-          if (table.is_set(threshold + " " + name))
-            check(threshold + " " + name, bonds.threshold);
-        }
       using Rule = ContactQuadratureParameters::Rule;
       if (p.load_path.arc && p.degree == 1 && p.quadrature.rule != Rule::nodal)
         table.reject("Load path/Arc",
@@ -407,16 +394,19 @@ namespace Debond
             return true;
         return false;
       };
-      if (body.source == BodyParameters::Source::file &&
-          !is_given("Material/Young"))
+      // The defaults are the paper's, for a strip of its length.
+      const bool is_own =
+        body.source != BodyParameters::Source::box ||
+        body.box.lengths[0] != BodyParameters().box.lengths[0];
+      if (is_own && !is_given("Material/Young"))
         table.notes.push_back("the Young modulus is the default one, 69 GPa");
-      if (table.is_set("Material/Young modulus") &&
+      if ((is_own || table.is_set("Material/Young modulus")) &&
           !p.contact_boundaries.empty() && p.law.name == "winkler" &&
           !is_given("Contact law/Bond") &&
           !is_given("Contact law/Fracture energy"))
         table.notes.push_back(
-          "the bonds are the default ones, 69 GPa/m up to 0.002 m: is the Young "
-          "modulus in GPa?");
+          "the bonds are the default ones, 69 GPa/m up to 0.002 m: is the scene "
+          "in m and GPa?");
       for (const auto &[is_idle, reason, entries] :
            std::vector<std::tuple<bool, std::string, std::string>>{
              {body.source != BodyParameters::Source::box,
@@ -633,6 +623,7 @@ namespace Debond
     body.meshing.memory = memory_left(p.solver.memory_limit);
     p.body =
       make_body(scene, p.dimension, body, parts, p.loads.constants, *this);
+    check_bonds(p, *this);
     p.law = laws.make_law(*this);
     complete_output(scene, p.output, *this);
 
@@ -651,8 +642,6 @@ namespace Debond
                      p.body->regions(),
                      *this);
       }
-    check_contact_boundaries(p, *this);
-    check_bonds(p, *this);
     check_certificate(p, *this);
     check_degree(p, *this);
     check_softening(p, *this);

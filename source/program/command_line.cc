@@ -332,6 +332,11 @@ namespace Debond
         }
       if (scenes.empty())
         throw BadInput({"no scene is given; see debond --help"});
+      for (const std::string &scene : scenes)
+        if (scene.find('=') != std::string::npos &&
+            !std::filesystem::exists(scene))
+          throw BadInput({"there is no scene " + scene +
+                          "; an entry is given by --set \"" + scene + "\""});
       return execute_scenes(scenes, options, watch);
     }
   } // namespace

@@ -282,7 +282,10 @@ namespace Debond
       // In the order of what the user has to know first: no answer, a search
       // that was cut short, files that are missing.
       if (!result.is_answer())
-        print("NOT CONVERGED (" + result.status + "): " + result.message);
+        print("NOT CONVERGED (" + result.status + "): " + result.message +
+              (result.solve.status == SolverStatus::interrupted ?
+                 "; --restart goes on from what is done" :
+                 ""));
       else if (interrupted)
         print("the search or the proof was interrupted; the result is what "
               "it had found");

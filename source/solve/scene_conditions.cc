@@ -112,8 +112,11 @@ namespace Debond
           throw EntryError("Boundary conditions/Contact boundary",
                            "the bodies on both sides of " + name +
                              " could go through each other: it has to have " +
-                             name + ", which is both sides; Bond stiffness " +
-                             name + " = 0 leaves the bonds out");
+                             name +
+                             ", which is both sides; bonds are left out by " +
+                             (given.law.name == "winkler" ?
+                                "Bond stiffness " + name + " = 0" :
+                                "a Traction factor that is 0 there"));
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }

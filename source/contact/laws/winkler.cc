@@ -145,7 +145,8 @@ namespace Debond
             table.reject(table.is_set(missing + suffix) ? missing + suffix :
                                                           missing,
                          "bonds need a stiffness and a threshold, or two of "
-                         "these, Bond strength and Fracture energy");
+                         "these, Bond strength and Fracture energy",
+                         {"Contact law/Law"});
           return;
         }
       // Only what the scene sets counts as given: a default for a or M must not
@@ -168,7 +169,7 @@ namespace Debond
                        "and Fracture energy are given" +
                          (suffix.empty() ? "" : " for" + suffix) +
                          ", no more and no fewer",
-                       {all.begin(), all.end()});
+                       {all[0], all[1], all[2], all[3], "Contact law/Law"});
           return;
         }
       for (const auto &[p, q, a, M] : formulas)
