@@ -25,15 +25,6 @@ def write_csv(path, titles, rows):
         csv.writer(file, lineterminator="\n").writerows([titles, *rows])
 
 
-def lacks(column, rows):
-    """The pointer of a column that no case with results has, and what they have."""
-    found = [row for row in rows if row.summary]
-    if not column.pointer or not found or any(column.value(row) is not None for row in found):
-        return ""
-    others = ", ".join(found[0].find(column.pointer) or [])
-    return column.pointer + (", but " + others if others else "")
-
-
 def table(study, rows):
     """Titles, and for each case its cells as values and as text."""
     titles = [sweep.label for sweep in study.sweeps]
@@ -49,8 +40,11 @@ def table(study, rows):
     for title, column in study.columns.items():
         cells = [studies.order(study, column, rows, k) if column.kind == "order"
                  else column.value(row) for k, row in enumerate(rows)]
-        if missing := lacks(column, rows):
-            raise BadInput(f"{study.file}: Study/Columns: no case has {missing}")
+        if column.pointer and any(row.summary for row in rows) and \
+                all(cell is None for cell in cells):
+            found = next(row for row in rows if row.summary).find(column.pointer)
+            raise BadInput(f"{study.file}: Study/Columns: no case has {column.pointer}" +
+                           (f", but {', '.join(found)}" if found else ""))
         add(title, column, cells)
         if title in study.reference.columns:
             add(f"{title} ({study.reference.label})", column,
@@ -107,13 +101,7 @@ def run(file, program, changes=(), jobs=None, only_validate=False):
         first = [study.first] if study.first else []
         afresh = cases.run(program, first, jobs) > 0
         if all(case.summary() for case in first):
-            # What is wrong with the columns is said before the others take their time.
-            cases.run(program, study.cases[:1], jobs, afresh)
-            for column in study.columns.values():
-                if missing := lacks(column, [studies.Row(study, study.cases[0])]):
-                    print(f"{file}: Study/Columns: the first case has no {missing}",
-                          file=sys.stderr, flush=True)
-            cases.run(program, study.minima + study.cases[1:], jobs, afresh)
+            cases.run(program, study.minima + study.cases, jobs, afresh)
     except KeyboardInterrupt:
         print(f"{file}: interrupted; the same command goes on where it stopped",
               file=sys.stderr)
