@@ -371,8 +371,8 @@ def check_tractions():
     off = 0.
     for row, before, after in zip(rows, [{}, *rows], [*rows[1:], {}]):
         at, is_edge = f"at {row['x']}", row["x"] % 2 == 1
-        u, slip = ((.5 * row[key] + .25 * (before.get(key, 0.) + after.get(key, 0.))
-                    if is_edge else row[key] for key in ("u_nu", "slip_x"))
+        u, slip = (.5 * row[key] + .25 * (before.get(key, 0.) + after.get(key, 0.))
+                   if is_edge else row[key] for key in ("u_nu", "slip_x"))
         close(at + ": shear", row["shear_traction"], kt * abs(slip), 1e-9, scale)
         if row["state"] == "contact":
             check(at + ": pressed", row["normal_traction"] == row["normal_force_density"])
