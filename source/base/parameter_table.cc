@@ -4,7 +4,6 @@
 #include <debond/base/atomic_file.h>
 #include <debond/base/parameter_table.h>
 #include <debond/base/suggestion.h>
-#include <debond/base/text.h>
 
 #include <boost/algorithm/string.hpp>
 

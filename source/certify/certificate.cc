@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/certify/certificate.h>
 #include <debond/certify/exact_energy.h>
 #include <debond/certify/positive_part.h>

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/interruption.h>
 #include <debond/base/processes.h>
-#include <debond/base/text.h>
-#include <debond/base/tolerances.h>
 #include <debond/certify/certification.h>
 #include <debond/input/bad_input.h>
 #include <debond/output/csv_table.h>

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/certify/global_bound.h>
-#include <debond/certify/mean_problem.h>
 #include <debond/certify/side_ranges.h>
 #include <debond/certify/trace_constant.h>
-#include <debond/optimization/interval.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 #include <debond/base/tolerances.h>
 #include <debond/certify/side_ranges.h>
 #include <debond/optimization/global/node_bound.h>
-#include <debond/optimization/interval.h>
 
 #include <algorithm>
 #include <array>

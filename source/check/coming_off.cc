@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/check/coming_off.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/polar_cone.h>

@@ -2,7 +2,6 @@
 #include <deal.II/base/auto_derivative_function.h>
 #include <deal.II/base/quadrature_lib.h>
 
-#include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/check/displacement_error.h>
 #include <debond/mesh/field_value.h>

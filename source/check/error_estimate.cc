@@ -3,8 +3,6 @@
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <debond/base/ranks.h>
-#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/field_value.h>

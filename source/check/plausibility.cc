@@ -2,7 +2,6 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <debond/base/text.h>
-#include <debond/base/tolerances.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/owned_cells.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 #include <debond/contact/adhesion_sums.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/contact_points.h>
-#include <debond/optimization/interval.h>
 
 #include <Eigen/QR>
 

@@ -2,7 +2,6 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <debond/base/ranks.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/probes.h>
 #include <debond/mesh/cell_search.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/ranks.h>
 #include <debond/elasticity/prolongations.h>
 
 #include <boost/serialization/array.hpp>

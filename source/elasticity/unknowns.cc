@@ -2,12 +2,9 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
-#include <debond/base/ranks.h>
 #include <debond/base/text.h>
-#include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/edge_coefficients.h>
-#include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/entry_error.h>
-#include <debond/base/text.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/load_parameters.h>
 

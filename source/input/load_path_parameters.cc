@@ -2,7 +2,6 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/append.h>
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/input/load_path_parameters.h>
 

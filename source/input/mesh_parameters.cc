@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
-#include <debond/input/expression.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/mesh/field_value.h>
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interruption.h>
 #include <debond/base/memory.h>
-#include <debond/base/text.h>
-#include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/input/parameters.h>
 #include <debond/input/probe_parameters.h>
-#include <debond/input/solver_parameters.h>
 
 #include <boost/algorithm/string/predicate.hpp>
 

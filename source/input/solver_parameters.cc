@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/text.h>
 #include <debond/input/solver_parameters.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
-#include <debond/base/ranks.h>
 #include <debond/linear_algebra/cholmod_factor.h>
 
 #include <cholmod.h>

@@ -2,7 +2,6 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
-#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/block_factor.h>
 #include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/linear_algebra/stagnation.h>

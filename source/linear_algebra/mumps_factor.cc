@@ -4,7 +4,6 @@
 #include <deal.II/lac/lapack_templates.h>
 
 #include <debond/base/memory.h>
-#include <debond/base/ranks.h>
 #include <debond/linear_algebra/block_factor.h>
 #include <debond/linear_algebra/mumps_factor.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
-#include <debond/base/text.h>
 #include <debond/output/csv_table.h>
 
 #include <boost/algorithm/string/replace.hpp>

@@ -4,10 +4,8 @@
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/processes.h>
-#include <debond/base/ranks.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
-#include <debond/output/vtu.h>
 
 #include <filesystem>
 

@@ -3,7 +3,6 @@
 #include <debond/output/matrices.h>
 #include <debond/output/output_files.h>
 #include <debond/output/tables.h>
-#include <debond/output/vtu.h>
 #include <debond/solve/displacement.h>
 
 #include <filesystem>

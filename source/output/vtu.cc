@@ -3,8 +3,6 @@
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/processes.h>
-#include <debond/base/ranks.h>
-#include <debond/mesh/bernstein.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/output/vtu.h>
 #include <debond/output/vtu_grid.h>

@@ -2,10 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
-#include <debond/base/tolerances.h>
-#include <debond/check/plausibility.h>
 #include <debond/input/bad_input.h>
-#include <debond/input/expression.h>
 #include <debond/program/check_result.h>
 
 #include <algorithm>

@@ -3,9 +3,6 @@
 
 #include <debond/base/memory.h>
 #include <debond/base/processes.h>
-#include <debond/base/ranks.h>
-#include <debond/base/text.h>
-#include <debond/input/bad_input.h>
 #include <debond/output/report.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>

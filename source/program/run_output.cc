@@ -2,7 +2,6 @@
 #include <debond/base/append.h>
 #include <debond/base/atomic_file.h>
 #include <debond/base/processes.h>
-#include <debond/base/ranks.h>
 #include <debond/program/run_output.h>
 #include <debond/solve/displacement.h>
 

@@ -2,14 +2,11 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/memory.h>
-#include <debond/base/tolerances.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/adaptive_loop.h>
-#include <debond/solve/load_path.h>
-#include <debond/solve/mesh_growth.h>
 
 #include <algorithm>
 #include <iomanip>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/optimization/majorise/bound_qp.h>
-#include <debond/optimization/stationary_path.h>
 #include <debond/solve/bond_change.h>
 
 #include <Eigen/Cholesky>

@@ -7,7 +7,6 @@
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/optimization/bundle/metric_direction.h>
-#include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/contact_solver.h>
 #include <debond/solve/displacement_problem.h>

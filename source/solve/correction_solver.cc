@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/solve/correction_solver.h>
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
-#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/stagnation.h>
 #include <debond/solve/displacement_problem.h>
 

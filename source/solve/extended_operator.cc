@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/mesh/bernstein.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/extended_operator.h>
 

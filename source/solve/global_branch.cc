@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/refinement.h>
 

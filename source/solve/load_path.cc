@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/text.h>
-#include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/bond_change.h>

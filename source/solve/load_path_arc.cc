@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interruption.h>
-#include <debond/base/tolerances.h>
 #include <debond/solve/load_path_arc.h>
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/text.h>
-#include <debond/base/tolerances.h>
 #include <debond/solve/load_path_steps.h>
 
 #include <algorithm>

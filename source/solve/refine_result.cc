@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/tolerances.h>
 #include <debond/solve/refine_result.h>
 
 namespace Debond

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/tolerances.h>
 #include <debond/optimization/majorise/majorant.h>
 #include <debond/solve/extended_operator.h>
 #include <debond/solve/refinement.h>

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/interruption.h>
-#include <debond/base/ranks.h>
-#include <debond/base/text.h>
-#include <debond/base/tolerances.h>
-#include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/probe_parameters.h>

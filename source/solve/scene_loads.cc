@@ -2,7 +2,6 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/mpi.h>
 
-#include <debond/input/expression.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/scene_loads.h>
 

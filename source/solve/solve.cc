@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/contact_solver.h>

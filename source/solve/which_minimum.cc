@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interruption.h>
 #include <debond/base/memory.h>
-#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/convexity_shift.h>
-#include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/which_minimum.h>

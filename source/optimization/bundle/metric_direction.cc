@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/dof_vector.h>
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>
