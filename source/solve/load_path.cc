@@ -509,6 +509,12 @@ namespace Debond
         const bool          verified = is_verified(state.verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
+        // Without loads J is rounding of what it is at other factors.
+        double rounding = 0.;
+        for (const LoadPathStep<dim> &step : steps)
+          rounding =
+            std::max(rounding,
+                     Tolerance::epsilon * std::abs(step.state.functional));
         for (unsigned int k = 0; k < steps.size(); ++k)
           if (steps[k].factors() == factors)
             {
@@ -521,9 +527,9 @@ namespace Debond
                                "global branch: " + failure(state.verification);
               // The followed state is this one, or as good.
               if (step.message.empty() &&
-                  step.state.functional <=
-                    global.functional + solver_parameters.proof.tolerance *
-                                          std::abs(global.functional))
+                  step.state.functional <= global.functional + rounding +
+                                             solver_parameters.proof.tolerance *
+                                               std::abs(global.functional))
                 {
                   kinds[k]           = point.which.kind;
                   step.state.minimum = global.minimum;

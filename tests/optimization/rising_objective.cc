@@ -21,7 +21,7 @@ namespace
     State
     evaluate() override
     {
-      return {J, /*functional_rounding=*/1e-12, /*residual=*/1., 0., 0};
+      return {J, /*functional_rounding=*/1e-12, /*residual=*/1., 0., 1., 0};
     }
 
     bool
@@ -55,7 +55,7 @@ namespace
     State
     evaluate() override
     {
-      return {1., 1e-12, residual, 0., 0};
+      return {1., 1e-12, residual, 0., 1., 0};
     }
 
     bool

@@ -537,6 +537,30 @@ def check_pad(dim, L, unit):
         check_off(solve(*scene, pulled(dim, above * a * M)), dim, 1., 0., above * a * M * area)
 
 
+def check_end_of_curve(dim, L, unit):
+    """Bonds that end with a traction let go of what pulls more."""
+    T, area = 1e-3 * unit, 0.2 * L * (0.1 * L if dim == 3 else 1.)
+    scene = box(dim, (0.2 * L, 0.1 * L, 0.1 * L), "8, 4" if dim == 2 else "4, 2, 2", 70. * unit,
+                0., "left", "Boundary conditions/Contact boundary=bottom", "Contact law/Law=curve",
+                f"Contact law/Curve=0:0, {1e-3 * L}:{1.1 * T}, {3e-3 * L}:{T}",
+                "Boundary conditions/Roller boundaries=",
+                "Contact law/Tangential displacement=fixed")
+    check_off(solve(*scene, pulled(dim, 1.2 * T)), dim, 1., 0., 0.2 * T * area)
+    held = solve(*scene, pulled(dim, 0.99 * T))
+    check("bonds that end with a traction hold", held["status"] == "success", held["errors"])
+
+
+def check_too_slender():
+    """A strip whose stiffness is beyond 16 digits: no fault of the program, nor of the scene's
+    supports and materials."""
+    result = solve("Mesh/Lengths=10, 0.001", "Mesh/Cells=150, 1", "Mesh/Degree=2",
+                   "Boundary conditions/Clamped boundaries=left",
+                   "Boundary conditions/Contact boundary=bottom",
+                   "Contact law/Quadrature=gauss 2", "Loads/Traction right=0; 1e-12")
+    check("is refused", result["exit_code"] == 2 and "too slender" in result["errors"],
+          result["errors"])
+
+
 def check_coming_off(dim, L, unit):
     """Which loads pull strips and plates off: the foundation bears a resultant that presses
     within its boundary, and a body comes off by turning about the edge that it presses
@@ -705,7 +729,8 @@ def check_gap_at_clamp(gap):
 scenes.together(
     *((f"{test.__name__}, {dim}D, {name}", test, dim, length, modulus)
       for dim, name, length, modulus in SYSTEMS
-      for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off)),
+      for test in (check_stretched, check_column_on_bonds, check_pad, check_end_of_curve,
+                   check_coming_off)),
     *(("pads in " + name, check_plane_pads, length, modulus)
       for dim, name, length, modulus in SYSTEMS if dim == 2),
     *(("gap at a clamp", check_gap_at_clamp, f"1e-3*(x*{a!r} - {0.3 * a!r})/{a!r}")
@@ -722,7 +747,7 @@ scenes.together(
     *((test.__name__, test, *arguments) for test, *arguments in (
         [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
         [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],
-        [check_forgotten],
+        [check_forgotten], [check_too_slender],
         [check_heated, 2, "plane stress"], [check_heated, 2, "plane strain"],
         [check_heated, 3, "plane stress"])))
 scenes.end()

@@ -473,6 +473,25 @@ def check_arc_of_steps():
           len(result["arc"]) > broken * len(steps), len(result["arc"]))
     check("more than 20 for each node", len(result["arc"]) > 100 + 20 * nodes)
     check("without a note", not any("arc" in note for note in result["notes"]), result["notes"])
+    # Two nodes change at one factor, but for rounding.
+    L = 73000.
+    arc = solve(NO_GLOBAL, "Load path/Arc=true", "Load path/Factors=0.419, 2.724",
+                f"Mesh/Lengths={7.854905527390874 * L}, {4.291882178918444 * L}", "Mesh/Cells=5, 2",
+                "Material/Young modulus=1.2632818378701813e-05",
+                f"Parts/upper=y > {2.2 * L}", f"Parts/pu=left: y > {2.2 * L}",
+                "Material/Young moduli upper=2.2027e-05, 4.5519e-05, 1.03551e-05",
+                "Material/Poisson ratios upper=0.07097, -0.09853, 0.13176",
+                "Material/Shear moduli upper=3.2834e-06, 3.88677e-06, 7.31477e-06",
+                "Boundary conditions/Clamped boundaries=right",
+                "Boundary conditions/Contact boundary=bottom",
+                f"Boundary conditions/Displacement pu=free; {0.0142656 * L}",
+                "Loads/Pressure top=-1.1512677979133876e-08", "Contact law/Law=bilinear",
+                "Contact law/Bond stiffness=1.905680960226034e-10",
+                "Contact law/Bond strength=3.551543469510946e-08",
+                "Contact law/Fracture energy=1.9507540865316708e-05")["arc"]
+    check("an arc", len(arc) > 5, len(arc))
+    check("a row for each corner", all(abs(a["factor"] - b["factor"]) > 1e-9
+                                       for a, b in zip(arc, arc[1:])), arc)
 
 
 def check_parts():

@@ -6,6 +6,7 @@ beside branch and bound: at most 1 of 100 scenes, where it has proved the minimu
 lower one; and on a pad whose least J is far below that of its plain stationary point, what
 searches and proofs of all lengths say. Small scenes are beside enumeration in
 check_shapes.py."""
+import math
 import pathlib
 import sys
 
@@ -50,6 +51,20 @@ def check_pad():
                      and result["minimum"]["state"] != "global", result["minimum"])
 
 
+def check_many_points():
+    """A curve of 201 measured points, with moves for each of them at each node: a proof of few
+    nodes comes first, and leaves nothing to search for."""
+    points = [(4e-5 * k, .3 * math.sin(math.pi * k / 200)**2 * (1 + .1 * math.sin(k)))
+              for k in range(200)] + [(8e-3, 0.)]
+    result = scenes.solve("Mesh/Lengths=0.4, 0.04", "Mesh/Cells=40, 4",
+                          "Boundary conditions/Clamped boundaries=left",
+                          "Boundary conditions/Contact boundary=bottom",
+                          "Loads/Traction right=0; 0.1", "Contact law/Law=curve",
+                          "Contact law/Curve=" + ", ".join(f"{s:.8g}:{t:.8g}" for s, t in points))
+    scenes.check("many points", result["minimum"]["state"] == "global"
+                 and result["minimum"]["search_trials"] == 0, result["minimum"])
+
+
 def main(count=5, first=0):
     """Laws of which some bonds break; on every second one bonds have to bridge a gap."""
     missed = tried = number = 0
@@ -82,4 +97,5 @@ def main(count=5, first=0):
 
 
 check_pad()
+check_many_points()
 main(*map(int, sys.argv[2:]))

@@ -287,7 +287,41 @@ def check_edges():
     close("a peeled strip is found with both laws", states[0], states[1], 0.01)
 
 
+def check_gap():
+    """A path begins at rest, where a gap of 0.15 has softened the bonds to the secant of its
+    traction 10 (0.2 - 0.15) / 0.19, whichever factors come first."""
+    scenes.section("Gap")
+    secant = 10 * .05 / .19 / .15
+    for factors in "-0.14", "0, -0.14", "-0.14, -0.1, 0", "0, -0.05, -0.149, -0.14":
+        path = solve("Mesh/Lengths=1, 1", "Mesh/Cells=1, 1", "Material/Young modulus=1e6",
+                     "Material/Poisson ratio=0", "Boundary conditions/Clamped boundaries=",
+                     "Boundary conditions/Contact boundary=bottom",
+                     "Boundary conditions/Displacement top=0; 1", *FREE,
+                     *law("bilinear", 1000, 10, 1), "Contact law/Initial gap=0.15",
+                     "Load path/Displacement factors=" + factors, NO_HEALING)["path"]
+        row = next((row for row in path if row["displacement_factor"] == -.14), {})
+        close(f"force on the way {factors}", row.get("unit_displacement_work"),
+              .01 * secant / (1 + secant / 1e6), 1e-8)
+
+
+def check_units():
+    """Rings that softening bonds alone hold: J goes with the cube of the unit of length."""
+    scenes.section("Units")
+    results = [solve(
+        "Symmetry=axis", f"Constants/u={u!r}", "Mesh/Lengths=6.6*u, 3.9*u", "Mesh/Cells=2, 3",
+        "Mesh/Cuts=y = 1.3*u, y = 2.6*u", "Parts/upper=y > 1.3*u", "Material/Young modulus=55",
+        "Material/Poisson ratio=0.4", "Material/Young modulus upper=3.3",
+        "Material/Poisson ratio upper=0.2", "Boundary conditions/Clamped boundaries=bottom",
+        "Boundary conditions/Contact boundary=cut_1, cut_2", "Solver/Search=none",
+        "Boundary conditions/Displacement top=free; 0.05*u", "Loads/Pressure cut_1=0.0155",
+        *law("bilinear", "74/u", 0.07, "1.12e-4*u"),
+        "Contact law/Tangential displacement=bonded").get("functional", 0.) / u**3
+               for u in (1., 1e-3, 1e2, 1e3, 1e4)]
+    for value in results[1:]:
+        close("J", value, results[0], 1e-9)
+
+
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_column, check_strip, check_brittle, check_snap_back, check_proofs,
-    check_double_cantilever, check_edges)))
+    check_double_cantilever, check_edges, check_gap, check_units)))
 scenes.end()

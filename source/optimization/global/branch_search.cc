@@ -340,9 +340,9 @@ namespace Debond
     /// With more unknowns the first node takes longer than the first search.
     constexpr unsigned int largest_first_look = 100;
 
-    /// Those of a first look on so many: a proof of few nodes takes less time
-    /// than the quickest search.
-    constexpr unsigned int nodes_of_first_look = 10;
+    /// Those of a look on so few, before any search and before the whole one: a
+    /// proof of few nodes takes less time than these.
+    constexpr unsigned int nodes_of_first_look = 10, nodes_of_second_look = 30;
 
     /// Each is begun because the one before found a lower point.
     constexpr unsigned int most_proofs = 4;
@@ -367,17 +367,14 @@ namespace Debond
         const unsigned int n_nodes  = static_cast<unsigned int>(std::ceil(
           std::min(double(most_nodes), most_operations / (n * n * n))));
 
-        const Eigen::VectorXd given = s;
         if (is_separable && is_proved(s, is_small ? nodes_of_first_look : 0))
           return result;
         BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
         search(quick, s);
-        // The first nodes from the same point are the same.
-        const bool is_looked_at = is_separable && is_small && s == given;
         if (problem.interruption.requested() ||
-            (!is_looked_at && is_proved(s, 1)))
+            is_proved(s, is_separable && is_small ? nodes_of_second_look : 1))
           return result;
         // What the proof finds is where moves have not been tried from.
         // Search and proof help each other: a proof that finds a lower point
