@@ -180,6 +180,7 @@ namespace Debond
   std::vector<std::string>
   sliding_notes(const AdhesionIntegral<dim> &adhesion,
                 const Verification<dim>     &verification,
+                const bool                   are_glued,
                 const bool                   is_curved)
   {
     // Of what is free the force along the boundary is zero.
@@ -199,7 +200,7 @@ namespace Debond
       }
 
     std::vector<std::string> notes;
-    if (along > could_bear && could_bear > 0.)
+    if (are_glued && along > could_bear && could_bear > 0.)
       notes.push_back(
         words("the contact boundary bears ",
               along,

@@ -197,13 +197,14 @@ namespace Debond
     std::vector<double> temperatures;
     DofVector           applied_forces, dead_forces;
     on_all_ranks(ranks, [&]() {
-      temperatures   = temperature_changes(dofs.get_triangulation(),
+      temperatures = temperature_changes(dofs.get_triangulation(),
                                          heat_is_dead ? dead_loads : loads,
                                          dofs.get_fe().degree);
-      applied_forces = load_vector(dofs, loads, symmetry, &notes);
-      if (dead_loads.body_force || !dead_loads.tractions.empty() ||
-          heat_is_dead)
-        dead_forces = load_vector(dofs, dead_loads, symmetry, &notes);
+    });
+    applied_forces = load_vector(dofs, loads, symmetry, &notes);
+    if (dead_loads.body_force || !dead_loads.tractions.empty() || heat_is_dead)
+      dead_forces = load_vector(dofs, dead_loads, symmetry, &notes);
+    on_all_ranks(ranks, [&]() {
       add_thermal_forces(dofs,
                          materials,
                          temperatures,

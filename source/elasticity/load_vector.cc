@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
+#include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/load_vector.h>
@@ -226,57 +227,61 @@ namespace Debond
 
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       std::vector<dealii::Tensor<1, dim>>          values(rule.size());
-      for (const auto &cell : owned_cells(dof_handler))
-        for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->at_boundary(f))
-              continue;
-            const auto face       = cell->face(f);
-            const auto loads_here = loads.tractions.find(face->boundary_id());
-            if (loads_here == loads.tractions.end())
-              continue;
-            fe_values.reinit(cell, f);
-            cell->get_dof_indices(dofs);
-            const dealii::Tensor<1, dim> normal  = fe_values.normal_vector(0);
-            const double                 measure = face->measure();
-            std::array<dealii::Point<dim>, dim> corners;
-            for (unsigned int v = 0; v < dim; ++v)
-              corners[v] = face->vertex(v);
-            for (const Traction<dim> &traction : loads_here->second)
-              {
-                dealii::Tensor<1, dim> by_rule;
-                double                 mean_size = 0.;
-                for (unsigned int q = 0; q < rule.size(); ++q)
-                  {
-                    const auto &point = fe_values.quadrature_point(q);
-                    values[q]         = (dim - 1.) * rule.weight(q) *
-                                circumference(symmetry, point) *
-                                traction(on_face<dim>(point, corners), normal);
-                    by_rule += values[q];
-                    mean_size += values[q].norm();
-                  }
-                for (unsigned int i = 0; i < dofs.size(); ++i)
-                  if (fe.has_support_on_face(i, f))
-                    forces(dofs[i]) += measure * integral(fe_values, i, values);
-                if (notes == nullptr)
-                  continue;
-                WorstFace<dim> &worst = worst_faces[traction.entry];
-                worst.size += measure * mean_size;
-                const double difference =
-                  measure *
-                  (mean_traction<dim>(
-                     traction, symmetry, normal, corners, coarse_rule) -
-                   by_rule)
-                    .norm();
-                if (difference > worst.difference)
-                  worst = {&traction,
-                           worst.size,
-                           difference,
-                           normal,
-                           corners,
-                           measure};
-              }
-          }
+      on_all_ranks(dof_handler.get_communicator(), [&]() {
+        for (const auto &cell : owned_cells(dof_handler))
+          for (const unsigned int f : cell->face_indices())
+            {
+              if (!cell->at_boundary(f))
+                continue;
+              const auto face       = cell->face(f);
+              const auto loads_here = loads.tractions.find(face->boundary_id());
+              if (loads_here == loads.tractions.end())
+                continue;
+              fe_values.reinit(cell, f);
+              cell->get_dof_indices(dofs);
+              const dealii::Tensor<1, dim> normal  = fe_values.normal_vector(0);
+              const double                 measure = face->measure();
+              std::array<dealii::Point<dim>, dim> corners;
+              for (unsigned int v = 0; v < dim; ++v)
+                corners[v] = face->vertex(v);
+              for (const Traction<dim> &traction : loads_here->second)
+                {
+                  dealii::Tensor<1, dim> by_rule;
+                  double                 mean_size = 0.;
+                  for (unsigned int q = 0; q < rule.size(); ++q)
+                    {
+                      const auto &point = fe_values.quadrature_point(q);
+                      values[q] =
+                        (dim - 1.) * rule.weight(q) *
+                        circumference(symmetry, point) *
+                        traction(on_face<dim>(point, corners), normal);
+                      by_rule += values[q];
+                      mean_size += values[q].norm();
+                    }
+                  for (unsigned int i = 0; i < dofs.size(); ++i)
+                    if (fe.has_support_on_face(i, f))
+                      forces(dofs[i]) +=
+                        measure * integral(fe_values, i, values);
+                  if (notes == nullptr)
+                    continue;
+                  WorstFace<dim> &worst = worst_faces[traction.entry];
+                  worst.size += measure * mean_size;
+                  const double difference =
+                    measure *
+                    (mean_traction<dim>(
+                       traction, symmetry, normal, corners, coarse_rule) -
+                     by_rule)
+                      .norm();
+                  if (difference > worst.difference)
+                    worst = {&traction,
+                             worst.size,
+                             difference,
+                             normal,
+                             corners,
+                             measure};
+                }
+            }
+      });
       if (notes == nullptr)
         return;
       // Other ranks may have all faces of a load.
@@ -333,7 +338,9 @@ namespace Debond
   {
     DofVector forces(dof_handler.n_dofs());
     if (loads.body_force)
-      add_body_force(dof_handler, loads, symmetry, forces);
+      on_all_ranks(dof_handler.get_communicator(), [&]() {
+        add_body_force(dof_handler, loads, symmetry, forces);
+      });
     if (!loads.tractions.empty())
       add_tractions(dof_handler, loads, symmetry, forces, notes);
     return forces;

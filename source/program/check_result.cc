@@ -307,6 +307,7 @@ namespace Debond
         result.notes);
     append(sliding_notes(bonds,
                          result.verification,
+                         !scene.body().cuts.empty(),
                          scene.supports().normals.empty() &&
                            is_curved(scene.contact_boundary())),
            result.notes);

@@ -242,6 +242,11 @@ class Body:
         self.fixed, self.free, self.contact, self.slots = {}, [], [], {}
         for v in range(len(self.points)):
             here, frame = normals.get(v, []), []
+            # u_tau = 0 and a support that is inclined to the normal leave nothing; up to 16
+            # degrees from the boundary, as on polygons, it counts as along it.
+            if is_fixed and len(here) == 1 and any(
+                    value == 0. and abs(here[0] @ row) > .28 for row, value in rows[v]):
+                rows[v] = rows[v] + [((1., 0.), 0.), ((0., 1.), 0.)]
             wanted = rows[v] + [(d, k) for k, d in enumerate(here)
                                 if len(here) == 1 or not is_fixed] + [((1., 0.), None),
                                                                       ((0., 1.), None)]

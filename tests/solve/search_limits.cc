@@ -68,6 +68,7 @@ namespace
   {
     const Parameters parameters =
       parameters_of({"Contact law/Bond stiffness=690",
+                     "Contact law/Quadrature=gauss 2",
                      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"});
     const Scene<2>     scene(parameters);
     const Condensation condensed =

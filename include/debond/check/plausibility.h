@@ -53,13 +53,14 @@ namespace Debond
                      const double         cell_size_at_edge);
 
   /// Returns notes on bodies that do not slide along their contact boundary as
-  /// their bonds would let them: nodes that are fixed along it bear more than
-  /// bonds could, or flat faces of a curved boundary press on each other where
-  /// bonds are broken by slip.
+  /// their bonds would let them: nodes of bodies that are glued to each other,
+  /// if they are fixed along it, bear more than bonds could, or flat faces of a
+  /// curved boundary press on each other where bonds are broken by slip.
   template <int dim>
   std::vector<std::string>
   sliding_notes(const AdhesionIntegral<dim> &adhesion,
                 const Verification<dim>     &verification,
+                const bool                   are_glued,
                 const bool                   is_curved);
 
   /// Returns notes on bonds that are hardly meant: there are none, all are

@@ -87,7 +87,7 @@ namespace Debond
    * line that names the worst face.
    *
    * Throws EntryError with the place if a load is not finite at a point of the
-   * rules.
+   * rules. To be called by all ranks that share the mesh.
    */
   template <int dim>
   DofVector
