@@ -111,8 +111,7 @@ namespace
   {
     const ContactBoundary<2>   boundary = one_face<2>();
     const ContactQuadrature<2> nodal({});
-    const auto                 part = [&](const AdhesiveLaw &law,
-                          const double       opening) {
+    const auto part = [&](const AdhesiveLaw &law, const double opening) {
       return broken_zone(boundary,
                          law,
                          AdhesionIntegral<2>(boundary, law, nodal),
