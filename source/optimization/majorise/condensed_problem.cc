@@ -263,6 +263,9 @@ namespace Debond
       if (ds(i) > 0.)
         limit = std::min(limit, (upper(i) - s(i)) / ds(i));
     const Eigen::VectorXd start     = s;
+    const Eigen::VectorXd rigid     = N.cols() > 0 ?
+                                        Eigen::VectorXd(N * (N.transpose() * ds)) :
+                                        Eigen::VectorXd::Zero(s.size());
     const double          work      = ds.dot(g - S * s);
     const double          stiffness = ds.dot(S * ds);
     const auto            slope_at  = [&](const double t) {
@@ -288,9 +291,13 @@ namespace Debond
                    curvature > 0. ? -slope / curvature :
                                     std::max(-slope / std::abs(stiffness), t));
         const double part = phi.first_change(s, ds, step);
-        // What nothing holds would fall for ever: the next majorant says so.
-        if (N.cols() > 0 && curvature <= loose_stiffness * ds.squaredNorm() &&
-            part >= step && (step < limit - t || std::isinf(limit)))
+        // What nothing holds would fall for ever: the next majorant says so. A
+        // direction that is a rigid motion but for little has the stiffness of
+        // that little, which is no hold.
+        if (part >= step && (step < limit - t || std::isinf(limit)) &&
+            2. * rigid.squaredNorm() > ds.squaredNorm() &&
+            rigid.dot(phi.second_derivative(s) * rigid) <=
+              loose_stiffness * rigid.squaredNorm())
           return;
         // Beyond a kink, as on it the piece before it holds: by rounding, and
         // further for those that hardly move.
