@@ -191,6 +191,11 @@ namespace Debond
       s = qp.x;
     if (can_be_verified(qp.status) && phi.softens())
       fall(before);
+    // So far away that rounding of the displacements outweighs all forces: only
+    // a hold that is rounding itself can have led there.
+    if (N.cols() > 0 && s.norm() > before.norm() &&
+        Tolerance::row_of_product * stiffness * s.norm() > r.norm())
+      return {SolverStatus::comes_off, qp.steps, 0, qp.operations};
     return {qp.status, qp.steps, 0, qp.operations};
   }
 
