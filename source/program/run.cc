@@ -280,7 +280,8 @@ namespace Debond
       // that was cut short, files that are missing.
       if (!result.is_answer())
         print("NOT CONVERGED (" + result.status + "): " + result.message +
-              (result.solve.status == SolverStatus::interrupted ?
+              (result.solve.status == SolverStatus::interrupted &&
+                   (!result.path.empty() || !result.levels.empty()) ?
                  "; --restart goes on from what is done" :
                  ""));
       else if (interrupted)
