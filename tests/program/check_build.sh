@@ -5,6 +5,9 @@
 # no more. The trees have no source code, so nothing is compiled.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
+# With options to hand on, each build configures.
+unset DEBOND_CMAKE_OPTIONS DEBOND_TARGETS
+
 mkdir -p first/scripts
 cp "$tests/../scripts/build" "$tests/../scripts/install" first/scripts
 cat >first/CMakeLists.txt <<'END'
