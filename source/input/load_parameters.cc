@@ -64,11 +64,13 @@ namespace Debond
   LoadParameters::on_boundaries() const
   {
     std::vector<SurfaceLoad> result;
-    for (const auto &[kind, loads] : {std::make_pair("Traction", &tractions),
-                                      std::make_pair("Pressure", &pressures),
-                                      std::make_pair("Force", &forces)})
-      for (const auto &[boundary, expression] : *loads)
+    const auto add = [&result](const std::string &kind, const auto &loads) {
+      for (const auto &[boundary, expression] : loads)
         result.push_back({kind, boundary, expression});
+    };
+    add("Traction", tractions);
+    add("Pressure", pressures);
+    add("Force", forces);
     return result;
   }
 
