@@ -51,7 +51,8 @@ namespace Debond
           {
             // Least squares on the active columns alone, which may be dependent
             // where columns are parallel.
-            const Eigen::MatrixXd A = directions(Eigen::all, active);
+            const Eigen::MatrixXd A =
+              directions(Eigen::seqN(0, directions.rows()), active);
             Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
             qr.setThreshold(Tolerance::dependent);
             const Eigen::VectorXd least_squares = qr.compute(A).solve(f);

@@ -43,7 +43,7 @@ namespace
             active.push_back(i);
         if (static_cast<Eigen::Index>(active.size()) > B.rows())
           continue;
-        const Eigen::MatrixXd                       A = B(Eigen::all, active);
+        const Eigen::MatrixXd A = B(Eigen::seqN(0, B.rows()), active);
         Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
         qr.setThreshold(1e-10);
         if (qr.compute(A).rank() < A.cols())

@@ -3,6 +3,7 @@
 #define debond_mesh_mesh_data_h
 
 #include <deal.II/grid/tria.h>
+#include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
 #include <vector>

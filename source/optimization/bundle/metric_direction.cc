@@ -70,10 +70,10 @@ namespace Debond
         // d_free = -M_ff^{-1} (G_f lambda + M_fb b_b).
         Eigen::MatrixXd                         M_free = M(free, free);
         Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(M_free);
-        const Eigen::MatrixXd                   G_free = G(free, Eigen::all);
-        const Eigen::MatrixXd                   X      = factor.solve(G_free);
-        const Eigen::VectorXd                   M_d    = M * d;
-        const Eigen::VectorXd x_b = factor.solve(M_d(free).eval());
+        const Eigen::MatrixXd G_free = G(free, Eigen::seqN(0, G.cols()));
+        const Eigen::MatrixXd X      = factor.solve(G_free);
+        const Eigen::VectorXd M_d    = M * d;
+        const Eigen::VectorXd x_b    = factor.solve(M_d(free).eval());
 
         const Eigen::MatrixXd H = G_free.transpose() * X;
         BundleQP              qp(m, 0);
