@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/tria_description.h>
+
 #include <debond/base/tolerances.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/certify/trace_constant.h>

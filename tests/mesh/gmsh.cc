@@ -270,7 +270,23 @@ test_other_formats()
     "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
   check("a curve that is not in the file may bound a surface",
         read<2>(entities)->n_cells() == 1);
-  error(with("1 0 0 0 0\n", "1 0 0 0\n0\n", entities), "test.msh", 0.);
+  const std::string broken =
+    with("1 0 0 0 0\n",
+         "1 0 0 0\n0\n",
+         with("1 1 0 0 1 7\n", "1 1 0 1 5 0\n", entities));
+  bool right = false;
+  try
+    {
+      right = read<2>(broken)->regions() == std::set<std::string>{"5"};
+    }
+  catch (const std::invalid_argument &refused)
+    {
+      right = std::string(refused.what()).find("has to be a line") !=
+              std::string::npos;
+    }
+  check(
+    "an entity in two lines is read with its group, as by Gmsh 4.13, or refused",
+    right);
   error("    -1\n  2467\n    -1\n", "test.unv", 0.);
   error("*HEADING\n", "test.inp", 0.);
   error("MFEM mesh v1.0\n\ndimension\n2\n", "test.mesh", 0.);

@@ -35,7 +35,7 @@ grep -q "Cannot write limited/body.vtu: File too large" errors ||
 
 # The state for --restart likewise, by one rank for all; ranks that share memory
 # would need files for it.
-for launcher in "" "mpirun --allow-run-as-root --oversubscribe --mca btl self,tcp -n 2"; do
+for launcher in "" "mpirun --allow-run-as-root --oversubscribe --mca btl self,tcp --mca btl_tcp_if_include lo -n 2"; do
   rm -rf state
   expect_code 5 timeout 120 $launcher bash -c 'ulimit -f 40; exec "$@"' bash \
     "$debond" bar.prm --set "Mesh/Cells=160, 16" --set "Output/Directory=state" \

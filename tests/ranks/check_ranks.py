@@ -19,7 +19,7 @@ from vtu import Piece
 DEBOND, PRM = sys.argv[1:3]
 RANKS = [int(n) for n in sys.argv[3:]]
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
-                   OMPI_MCA_mpi_yield_when_idle="1")
+                   OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_btl_tcp_if_include="lo")
 MM = ["Solver/Method=majorise minimise"]
 BAR = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=16, 4, 4",
        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
