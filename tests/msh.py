@@ -56,7 +56,7 @@ def text(points, faces, cells, names=None, version="2.2", is_odd=False, order=No
              len(names)]
     lines += [f'{d} {group} "{name}"' for (d, group), name in names.items()]
     lines += ["$EndPhysicalNames"]
-    places = [" ".join(map(repr, (*point, 0.)[:3])) for point in nodes]
+    places = [" ".join((repr(float(x)) for x in (*point, 0.)[:3])) for point in nodes]
     tags = [number(v) for v in range(len(nodes))]
     if version == "2.2":
         # Repeats what is in two groups.

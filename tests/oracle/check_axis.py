@@ -46,7 +46,7 @@ def grid(name, n, place):
 def tilted(draw, most):
     """A direction at most so many degrees from downwards."""
     angle = np.radians(draw.uniform(-most, most) - 90.)
-    return 3 * np.cos(angle), 3 * np.sin(angle)
+    return float(3 * np.cos(angle)), float(3 * np.sin(angle))
 
 
 # ------------------------------------------------------------------ random scenes
@@ -121,7 +121,7 @@ def random_scene(draw, name):
     s[LAW + "Bond stiffness"], s[LAW + "Bond threshold"] = value(k), "1e9"
     body = Body([f"{key}={value}" for key, value in s.items()], *mesh)
     s0 = body.minimise([True] * len(body.bonds))
-    M = (np.abs(s0).max(initial=0.) or size / E * length) * draw.uniform(.3, 1.3)
+    M = (float(np.abs(s0).max(initial=0.)) or size / E * length) * draw.uniform(.3, 1.3)
     s[LAW + "Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
     if s[LAW + "Law"] == "winkler":
         s[LAW + "Bond threshold"] = value(M)
