@@ -33,7 +33,9 @@ namespace Debond
         }
       const auto add = [&cells](const std::vector<unsigned int> &vertices) {
         cells.emplace_back(3);
-        cells.back().vertices = vertices;
+        std::copy(vertices.begin(),
+                  vertices.end(),
+                  cells.back().vertices.begin());
       };
       for (unsigned int j = 0; j < n; ++j)
         for (unsigned int i = 0; i < n - j; ++i)
