@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/output/vtu_grid.h>
 
 #include <boost/endian/conversion.hpp>
@@ -12,12 +14,16 @@ namespace Debond
 {
   namespace
   {
+    using Bytes = std::vector<unsigned char>;
+
+
+
     /// Appends what is left of a block, and returns how much that is.
     std::size_t
     deflate_block(const Bytef *const block,
                   const std::size_t  n_bytes,
                   const int          strategy,
-                  std::string       &data)
+                  Bytes             &data)
     {
       const std::size_t begin = data.size();
       data.resize(begin + compressBound(n_bytes));
@@ -27,7 +33,7 @@ namespace Debond
         Z_OK;
       stream.next_in   = const_cast<Bytef *>(block);
       stream.avail_in  = static_cast<uInt>(n_bytes);
-      stream.next_out  = reinterpret_cast<Bytef *>(&data[begin]);
+      stream.next_out  = &data[begin];
       stream.avail_out = static_cast<uInt>(data.size() - begin);
       const bool is_done =
         has_begun && deflate(&stream, Z_FINISH) == Z_STREAM_END;
@@ -40,12 +46,13 @@ namespace Debond
 
 
 
-    /// Appends the number of blocks, their size, that of the last one if it is
-    /// smaller, and what is left of each, then the blocks.
+    /// Writes the number of blocks, their size, that of the last one if it is
+    /// smaller, and what is left of each, then the blocks, both in base64,
+    /// which all readers know.
     void
     compress(const Bytef *const numbers,
              const std::size_t  n_bytes,
-             std::string       &data)
+             std::ostream      &out)
     {
       constexpr std::size_t size_of_block = 1 << 20, size_of_sample = 1 << 15;
       const std::size_t     n_blocks =
@@ -54,8 +61,7 @@ namespace Debond
                                            size_of_block,
                                            static_cast<std::uint32_t>(
                                              n_bytes % size_of_block)};
-      const std::size_t          begin  = data.size();
-      data.resize(begin + (header.size() + n_blocks) * sizeof(header[0]));
+      Bytes                      data;
       for (std::size_t done = 0; done < n_bytes; done += size_of_block)
         {
           // Where hardly a number comes again, which the beginning of the block
@@ -73,10 +79,10 @@ namespace Debond
                           has_repetitions ? Z_DEFAULT_STRATEGY : Z_RLE,
                           data)));
         }
-      const auto *const bytes = reinterpret_cast<const char *>(header.data());
-      std::copy(bytes,
-                bytes + header.size() * sizeof(header[0]),
-                data.begin() + begin);
+      const auto *const bytes = reinterpret_cast<const Bytef *>(header.data());
+      out << dealii::Utilities::encode_base64(
+               {bytes, bytes + header.size() * sizeof(header[0])})
+          << dealii::Utilities::encode_base64(data);
     }
 
 
@@ -110,19 +116,17 @@ namespace Debond
 
 
 
-    /// The description goes to @p out.
     template <typename Number>
     void
     add_array(const std::string         &described,
               const std::vector<Number> &numbers,
-              std::ostream              &out,
-              std::string               &data)
+              std::ostream              &out)
     {
-      out << "<DataArray " << described << " format=\"appended\" offset=\""
-          << data.size() << "\"/>\n";
+      out << "<DataArray " << described << " format=\"binary\">\n";
       compress(reinterpret_cast<const Bytef *>(numbers.data()),
                numbers.size() * sizeof(Number),
-               data);
+               out);
+      out << "\n</DataArray>\n";
     }
 
 
@@ -130,12 +134,11 @@ namespace Debond
     void
     add_fields(const std::string                 &where,
                const std::vector<VtuGrid::Field> &fields,
-               std::ostream                      &out,
-               std::string                       &data)
+               std::ostream                      &out)
     {
       out << '<' << where << ">\n";
       for (const VtuGrid::Field &field : fields)
-        add_array(attributes("Float32", field), field.numbers, out, data);
+        add_array(attributes("Float32", field), field.numbers, out);
       out << "</" << where << ">\n";
     }
   } // namespace
@@ -150,27 +153,21 @@ namespace Debond
     for (std::size_t cell = 0; cell < n_cells; ++cell)
       ends[cell] = static_cast<std::int32_t>((cell + 1) * grid.points_of_cell);
 
-    std::string data;
     begin_file("UnstructuredGrid", out);
     out << ">\n<Piece NumberOfPoints=\"" << grid.points.numbers.size() / 3
         << "\" NumberOfCells=\"" << n_cells << "\">\n<Points>\n";
-    add_array(attributes("Float32", grid.points),
-              grid.points.numbers,
-              out,
-              data);
+    add_array(attributes("Float32", grid.points), grid.points.numbers, out);
     out << "</Points>\n<Cells>\n";
-    add_array(attributes("Int32", {"connectivity"}), grid.cells, out, data);
-    add_array(attributes("Int32", {"offsets"}), ends, out, data);
+    add_array(attributes("Int32", {"connectivity"}), grid.cells, out);
+    add_array(attributes("Int32", {"offsets"}), ends, out);
     add_array(attributes("UInt8", {"types"}),
               std::vector<std::uint8_t>(n_cells,
                                         static_cast<std::uint8_t>(grid.type)),
-              out,
-              data);
+              out);
     out << "</Cells>\n";
-    add_fields("PointData", grid.at_points, out, data);
-    add_fields("CellData", grid.in_cells, out, data);
-    out << "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
-        << data << "\n</AppendedData>\n</VTKFile>\n";
+    add_fields("PointData", grid.at_points, out);
+    add_fields("CellData", grid.in_cells, out);
+    out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   }
 
 
