@@ -13,6 +13,10 @@
 
 namespace Debond
 {
+  const bool has_aggregation = true;
+
+
+
   namespace
   {
     void

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
 #include <debond/input/bad_input.h>
+#include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/cholmod_factor.h>
 #include <debond/solve/method_choice.h>
 
@@ -209,6 +210,7 @@ namespace Debond
     const double                n_c        = unknowns.contact().size();
     const double                left       = memory_left(solver.memory_limit);
     const bool                  has_levels = scene.body().has_coarse_levels();
+    const bool                  has_cycle  = has_levels || has_aggregation;
     const bool needs_S      = needs_condensed(scene, solver, choice.method);
     double     direct_bytes = 0.;
     // A is known by now, and its symbolic factorisation gives the numbers of
@@ -233,11 +235,11 @@ namespace Debond
             // refused by it whatever the memory. Multigrid pays its cycles for
             // each step of a path, and for each column of S if that is needed,
             // which are too many.
-            if (direct_bytes > left || 8. * cost.entries > 1e12)
+            if (has_cycle && (direct_bytes > left || 8. * cost.entries > 1e12))
               why_multigrid = "a factorisation would take about " +
                               in_gib(direct_bytes) + " more, there are " +
                               in_gib(left);
-            else if ((dim == 3 || has_levels) && !needs_S &&
+            else if (has_cycle && (dim == 3 || has_levels) && !needs_S &&
                      cost.operations > largest_factorisation *
                                          (has_levels ? 1. : of_aggregates) *
                                          more_cycles(problem.materials) *
@@ -252,6 +254,12 @@ namespace Debond
               }
           }
       }
+
+    if (choice.linear_solver == LinearSolver::multigrid && !has_cycle)
+      throw BadInput({problem.scene +
+                      ": Solver/Linear solver = multigrid needs Trilinos with "
+                      "ML for a mesh without coarser ones, and the program was "
+                      "built without; try direct"});
 
     choice.has_levels =
       choice.linear_solver == LinearSolver::multigrid && has_levels;
@@ -270,17 +278,17 @@ namespace Debond
                              (needs_S ? 4. * 8. * n_c * n_c : 0.);
     choice.memory      = used_memory() + bytes;
     if (bytes > left)
-      throw BadInput({problem.scene + ": about " + rounded(n) +
-                      " unknowns need about " + in_gib(bytes) +
-                      " more of memory with " + choice.method +
-                      (choice.linear_solver == LinearSolver::none ?
-                         "" :
-                         " and the linear solver " + choice.linear_solver) +
-                      ", there are " + in_gib(left) + "; try fewer Mesh/Cells" +
-                      (choice.linear_solver == LinearSolver::direct ?
-                         ", Solver/Linear solver = multigrid," :
-                         "") +
-                      " or a higher Solver/Memory limit"});
+      throw BadInput(
+        {problem.scene + ": about " + rounded(n) + " unknowns need about " +
+         in_gib(bytes) + " more of memory with " + choice.method +
+         (choice.linear_solver == LinearSolver::none ?
+            "" :
+            " and the linear solver " + choice.linear_solver) +
+         ", there are " + in_gib(left) + "; try fewer Mesh/Cells" +
+         (choice.linear_solver == LinearSolver::direct && has_cycle ?
+            ", Solver/Linear solver = multigrid," :
+            "") +
+         " or a higher Solver/Memory limit"});
   }
 
 

@@ -8,6 +8,9 @@
 
 namespace Debond
 {
+  /// Whether Trilinos has ML, without which there are no aggregates.
+  extern const bool has_aggregation;
+
   /// The smoothed aggregates of Trilinos ML (Vanek, Mandel, Brezina, Computing
   /// 56, 1996), finest first, for @p n_components successive unknowns a node
   /// and a near null space, such as the rigid motions, zero where A is

@@ -2,11 +2,11 @@
 #ifndef debond_linear_algebra_multigrid_level_h
 #define debond_linear_algebra_multigrid_level_h
 
-#include <deal.II/base/subscriptor.h>
 #include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/precondition.h>
 
 #include <debond/base/tolerances.h>
+#include <debond/base/versions.h>
 #include <debond/linear_algebra/shared_nodes.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace Debond
 {
   /// Own rows of the matrix of a level, with local columns.
-  struct LevelMatrix : BlockRows<float>, dealii::Subscriptor
+  struct LevelMatrix : BlockRows<float>, EnableObserverPointer
   {
     void
     vmult(SinglePrecisionVector &dst, const SinglePrecisionVector &src) const;

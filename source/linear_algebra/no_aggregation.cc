@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// In place of aggregation.cc where Trilinos has no ML.
+#include <debond/linear_algebra/aggregation.h>
+
+namespace Debond
+{
+  const bool has_aggregation = false;
+
+
+
+  std::vector<Prolongation>
+  aggregated_prolongations(const MatrixOnRanks &,
+                           const unsigned int,
+                           const std::vector<DistributedVector> &)
+  {
+    AssertThrow(false, dealii::ExcNotImplemented());
+    return {};
+  }
+} // namespace Debond
