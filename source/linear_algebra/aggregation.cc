@@ -92,7 +92,8 @@ namespace Debond
     parameters.set("aggregation: type", "Uncoupled");
     parameters.set("smoother: type", "do-nothing");
     parameters.set("coarse: type", "do-nothing");
-    parameters.set("coarse: max size", 2000);
+    parameters.set("coarse: max size",
+                   static_cast<int>(largest_without_aggregates));
     // Else the levels would depend on what ML has made before.
     ML_set_random_seed(1);
     dealii::TrilinosWrappers::SparseMatrix matrix;

@@ -210,7 +210,8 @@ namespace Debond
     const double                n_c        = unknowns.contact().size();
     const double                left       = memory_left(solver.memory_limit);
     const bool                  has_levels = scene.body().has_coarse_levels();
-    const bool                  has_cycle  = has_levels || has_aggregation;
+    const bool                  has_cycle =
+      has_levels || has_aggregation || n <= largest_without_aggregates;
     const bool needs_S      = needs_condensed(scene, solver, choice.method);
     double     direct_bytes = 0.;
     // A is known by now, and its symbolic factorisation gives the numbers of

@@ -155,10 +155,10 @@ namespace
         const unsigned int nx = 2 * random.choice<unsigned int>({1, 2, 3});
         scene.values.push_back("Mesh/Lengths=" + text(length) + ',' +
                                text(height));
-        for (const auto &[cells, factor] : {std::make_pair(&scene.coarse, 1u),
-                                            std::make_pair(&scene.fine, 4u)})
-          cells->push_back("Mesh/Cells=" + std::to_string(factor * nx) + ',' +
-                           std::to_string(factor * ny));
+        for (const unsigned int factor : {1, 4})
+          (factor == 1 ? scene.coarse : scene.fine)
+            .push_back("Mesh/Cells=" + std::to_string(factor * nx) + ',' +
+                       std::to_string(factor * ny));
         return {"left", "right", "bottom", "top"};
       }
     const bool   is_sheared = random.uniform(0., 1.) < 0.5;
@@ -193,11 +193,11 @@ namespace
         const unsigned int nz = random.choice<unsigned int>({1, 2});
         scene.values.push_back("Mesh/Lengths=" + text(length) + ',' +
                                text(height) + ',' + text(width));
-        for (const auto &[cells, factor] : {std::make_pair(&scene.coarse, 1u),
-                                            std::make_pair(&scene.fine, 2u)})
-          cells->push_back("Mesh/Cells=" + std::to_string(factor * nx) + ',' +
-                           std::to_string(factor) + ',' +
-                           std::to_string(factor * nz));
+        for (const unsigned int factor : {1, 2})
+          (factor == 1 ? scene.coarse : scene.fine)
+            .push_back("Mesh/Cells=" + std::to_string(factor * nx) + ',' +
+                       std::to_string(factor) + ',' +
+                       std::to_string(factor * nz));
         return {"left", "right", "bottom", "top", "front"};
       }
     // Sheared along x and z, so that the bottom stays where it is.

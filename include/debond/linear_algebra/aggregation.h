@@ -8,6 +8,9 @@
 
 namespace Debond
 {
+  /// Matrices with so few rows have no coarser levels of aggregates.
+  constexpr unsigned int largest_without_aggregates = 2000;
+
   /// Whether Trilinos has ML, without which there are no aggregates.
   extern const bool has_aggregation;
 
