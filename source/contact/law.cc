@@ -121,6 +121,17 @@ namespace Debond
                                   const double delta,
                                   const double reached) const
   {
+    if (s + delta < 0.)
+      {
+        // All on one piece, whose derivative is monotone.
+        const PiecewiseEnergy::Piece piece = minimum.piece_at(s, reached);
+        if (piece.lower < s - delta && s + delta < piece.upper)
+          {
+            const double a = piece.derivative(s - delta),
+                         b = piece.derivative(s + delta);
+            return {std::min(a, b), std::max(a, b)};
+          }
+      }
     Interval hull = clarke_interval(s, reached);
     if (!(delta > 0.))
       return hull;

@@ -177,6 +177,7 @@ namespace Debond
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
+        condensed.factorise_by(factor);
         return by_majorise_minimise(scene.minimisation(
                                       parameters.majorise_minimise),
                                     here->energy_at_zero(),
@@ -273,6 +274,7 @@ namespace Debond
       const Condensation         whole;
       const Eigen::MatrixXd      free_motions;
       Eigen::VectorXd            s;
+      BorderedCholesky           factor; ///< of the last majorant
 
       std::optional<Condensation> here; ///< at the last factors
     };

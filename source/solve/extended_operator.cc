@@ -31,12 +31,15 @@ namespace Debond
         cell.gradients = dealii::invert(edges);
         cell.volume    = dealii::determinant(edges) / (dim == 2 ? 2 : 6);
         const Material &material = problem.fields().material(dof_cell);
-        cell.lambda              = material.lame_lambda<dim>();
-        cell.mu                  = material.shear_modulus();
         for (unsigned int v = 0; v <= dim && has_axis(); ++v)
           cell.radii[v] = dof_cell->vertex(v)[0];
         if (material.orthotropy || has_axis())
           cell.stiffness = &problem.fields().solid_tensor(dof_cell);
+        else
+          {
+            cell.lambda = material.lame_lambda<dim>();
+            cell.mu     = material.shear_modulus();
+          }
         cells.push_back(cell);
       }
   }
@@ -103,36 +106,7 @@ namespace Debond
     const ExtendedVector displacement = problem.unknowns().basis().to_nodal(u);
     ExtendedVector       forces       = ExtendedVector::Zero(u.size());
     for (const Cell &cell : cells)
-      for (unsigned int q = 0; q < reference_gradients.size(); ++q)
-        {
-          const std::vector<Gradient> gradients = gradients_at(cell, q);
-          Stress weighted = cell.volume / reference_gradients.size() *
-                            stress(cell, q, gradients, displacement);
-          // What pulls around the axis acts on all nodes, for displacements
-          // that neighbours have in common strain it as well.
-          if (has_axis())
-            {
-              weighted *= 2.L * dealii::numbers::PI * radius(cell, q);
-              for (unsigned int n = 0; n <= gradients.size(); ++n)
-                forces(cell.dofs[n * dim]) +=
-                  weighted[2][2] * reference_values[q][n] / radius(cell, q);
-            }
-          for (unsigned int n = 0; n < gradients.size(); ++n)
-            {
-              Gradient force;
-              for (unsigned int d = 0; d < dim; ++d)
-                for (unsigned int e = 0; e < dim; ++e)
-                  force[d] += weighted[d][e] * gradients[n][e];
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  // The first node has minus the sum of the others' forces, so
-                  // that each cell is in equilibrium. Rows of an assembled
-                  // matrix have that only to the rounding of their entries.
-                  forces(cell.dofs[(n + 1) * dim + d]) += force[d];
-                  forces(cell.dofs[d]) -= force[d];
-                }
-            }
-        }
+      add_forces(cell, displacement, forces);
 
     dealii::Utilities::MPI::sum(
       dealii::ArrayView<const long double>(forces.data(), forces.size()),
@@ -148,14 +122,64 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<dealii::Tensor<1, dim, long double>>
-  ExtendedOperator<dim>::gradients_at(const Cell        &cell,
-                                      const unsigned int point) const
+  void
+  ExtendedOperator<dim>::add_forces(const Cell           &cell,
+                                    const ExtendedVector &displacement,
+                                    ExtendedVector       &forces) const
   {
-    std::vector<Gradient> result;
-    for (const Gradient &gradient : reference_gradients[point])
-      result.push_back(cell.gradients * gradient);
-    return result;
+    // Of all nodes but the first, from which the displacements are counted:
+    // what neighbours have in common is gone before it is multiplied by a
+    // modulus.
+    std::array<Gradient, most_nodes> differences, of_nodes = {};
+    const auto n = static_cast<unsigned int>(reference_gradients[0].size());
+    for (unsigned int k = 0; k < n; ++k)
+      for (unsigned int d = 0; d < dim; ++d)
+        differences[k][d] = displacement(cell.dofs[(k + 1) * dim + d]) -
+                            displacement(cell.dofs[d]);
+    for (unsigned int q = 0; q < reference_gradients.size(); ++q)
+      {
+        // By barycentric coordinates, and from them in space and back.
+        dealii::Tensor<2, dim, long double> by_coordinates, to_coordinates;
+        for (unsigned int k = 0; k < n; ++k)
+          by_coordinates +=
+            outer_product(differences[k], reference_gradients[q][k]);
+        const auto in_space = by_coordinates * transpose(cell.gradients);
+        Stress     gradient;
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e)
+            gradient[d][e] = in_space[d][e];
+        long double weight = cell.volume / reference_gradients.size();
+        if (has_axis())
+          {
+            const long double r = radius(cell, q);
+            weight *= 2.L * dealii::numbers::PI * r;
+            for (unsigned int k = 0; k <= n; ++k)
+              gradient[2][2] +=
+                displacement(cell.dofs[k * dim]) * reference_values[q][k] / r;
+          }
+        const Stress sigma = weight * stress(cell, gradient);
+        // What pulls around the axis acts on all nodes, for displacements that
+        // neighbours have in common strain it as well.
+        if (has_axis())
+          for (unsigned int k = 0; k <= n; ++k)
+            forces(cell.dofs[k * dim]) +=
+              sigma[2][2] * reference_values[q][k] / radius(cell, q);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e)
+            for (unsigned int f = 0; f < dim; ++f)
+              to_coordinates[d][e] += sigma[d][f] * cell.gradients[f][e];
+        for (unsigned int k = 0; k < n; ++k)
+          of_nodes[k] += to_coordinates * reference_gradients[q][k];
+      }
+    // The first node has minus the sum of the others' forces, so that each cell
+    // is in equilibrium. Rows of an assembled matrix have that only to the
+    // rounding of their entries.
+    for (unsigned int k = 0; k < n; ++k)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          forces(cell.dofs[(k + 1) * dim + d]) += of_nodes[k][d];
+          forces(cell.dofs[d]) -= of_nodes[k][d];
+        }
   }
 
 
@@ -175,25 +199,8 @@ namespace Debond
 
   template <int dim>
   dealii::Tensor<2, 3, long double>
-  ExtendedOperator<dim>::stress(const Cell                  &cell,
-                                const unsigned int           point,
-                                const std::vector<Gradient> &gradients,
-                                const ExtendedVector        &cartesian_u) const
+  ExtendedOperator<dim>::stress(const Cell &cell, const Stress &gradient) const
   {
-    Stress gradient;
-    for (unsigned int n = 0; n < gradients.size(); ++n)
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int e = 0; e < dim; ++e)
-          gradient[d][e] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
-                             cartesian_u(cell.dofs[d])) *
-                            gradients[n][e];
-    if (has_axis())
-      for (unsigned int n = 0; n <= gradients.size(); ++n)
-        gradient[2][2] += cartesian_u(cell.dofs[n * dim]) *
-                          reference_values[point][n] / radius(cell, point);
-    // Stresses come from differences of displacements with the first node, in
-    // which what neighbours have in common is gone before it is multiplied by a
-    // modulus.
     if (cell.stiffness != nullptr)
       {
         Stress      sigma;

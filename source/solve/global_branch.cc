@@ -62,6 +62,7 @@ namespace Debond
         // majorise-minimise finds it within a few steps.
         Eigen::VectorXd  s = neighbour.s;
         CondensedProblem problem(condensed_problem(condensed, bonds), s);
+        problem.factorise_by(factor);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(
             scene.scene.minimisation(parameters.majorise_minimise))
@@ -105,6 +106,7 @@ namespace Debond
       SolverParameters           parameters;
       const CondensedScene<dim> &scene;
       const Interruption        &interruption;
+      BorderedCholesky           factor; ///< of the last step from a neighbour
     };
   } // namespace
 

@@ -471,7 +471,7 @@ namespace Debond
              DofVector                   &u)
       {
         const Refined refined = refine_where_needed(
-          scene.problem(), bonds, factors, correction, interruption, u);
+          scene, bonds, factors, correction, interruption, u);
         result.is_refined = refined.is_refined;
         if (!refined.note.empty() && result.notes.empty())
           result.notes.push_back(refined.note);

@@ -24,7 +24,7 @@ namespace Debond
       scene.problem().unknowns().contact().trace(result.u);
     // This replaces u only if the refinement converges.
     const Refined refined = refine_where_needed(
-      scene.problem(), scene.adhesion(), 1., solver, interruption, result.u);
+      scene, scene.adhesion(), 1., solver, interruption, result.u);
     result.is_refined       = refined.is_refined;
     const std::string &note = refined.note;
     if (!note.empty())

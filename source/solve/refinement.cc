@@ -135,10 +135,10 @@ namespace Debond
             // that the free unknowns have kept.
             const Eigen::VectorXd excess =
               to_foundation().template cast<double>() - upper;
-            const ExtendedVector r  = force();
-            Eigen::VectorXd      mu = at_contact(r).template cast<double>();
-            long double          residual = 0.;
-            std::vector<char>    held(static_cast<std::size_t>(u.size()), 0);
+            const ExtendedVector &r  = last_force;
+            Eigen::VectorXd       mu = at_contact(r).template cast<double>();
+            long double           residual = 0.;
+            std::vector<char>     held(static_cast<std::size_t>(u.size()), 0);
             for (unsigned int i = 0; i < normals.size(); ++i)
               if (active[i] != 0)
                 held[normals[i]] = 1;
@@ -289,7 +289,8 @@ namespace Debond
         long double error = std::numeric_limits<long double>::infinity();
         while (true)
           {
-            ExtendedVector r = force();
+            last_force       = force();
+            ExtendedVector r = last_force;
             release_held(r);
             ExtendedVector z   = precondition(r);
             long double    rho = r.dot(z);
@@ -350,6 +351,7 @@ namespace Debond
       const ExtendedVector lifting;
       ExtendedVector       u; ///< the displacements, lifting and all
       const ExtendedVector f;
+      ExtendedVector       last_force; ///< at u, after solve()
       long double          least_energy = 0.;
 
       Majorant  majorant;
@@ -385,14 +387,18 @@ namespace Debond
 
   template <int dim>
   Refined
-  refine_where_needed(const ElasticProblem<dim> &problem,
-                      const PiecewiseQuadratic  &phi,
-                      const LoadFactors          factors,
-                      CorrectionSolver          &solver,
-                      const Interruption        &interruption,
-                      DofVector                 &u)
+  refine_where_needed(const Scene<dim>         &scene,
+                      const PiecewiseQuadratic &phi,
+                      const LoadFactors         factors,
+                      CorrectionSolver         &solver,
+                      const Interruption       &interruption,
+                      DofVector                &u)
   {
-    if (u.all_zero())
+    const ElasticProblem<dim> &problem = scene.problem();
+    // All forces of a body at rest are rounding, over which active sets wander.
+    DofVector forces = problem.diagonal();
+    forces.scale(u);
+    if (forces.linfty_norm() <= scene.least_force())
       return {};
     // What rounding may have changed is compared with twice the strain energy,
     // so that refinement is done only where digits are at stake that are

@@ -38,6 +38,8 @@ namespace Debond
     using Gradient = dealii::Tensor<1, dim, long double>;
     using Stress   = dealii::Tensor<2, 3, long double>; ///< of the solid
 
+    static constexpr unsigned int most_nodes = dim == 2 ? 6 : 10; ///< of a cell
+
     struct Cell
     {
       /// By node, those of one after the other.
@@ -51,8 +53,8 @@ namespace Debond
       std::array<long double, dim + 1> radii = {};
 
       long double volume;
-      long double lambda; ///< Lame's
-      long double mu;
+      long double lambda = 0.L; ///< Lame's
+      long double mu     = 0.L;
 
       /// In place of them if the material is orthotropic, or around an axis.
       const dealii::SymmetricTensor<4, 3> *stiffness = nullptr;
@@ -67,20 +69,18 @@ namespace Debond
     void
     make_reference_gradients();
 
-    /// The gradients at a point of the rule of all basis functions but the
-    /// first.
-    std::vector<Gradient>
-    gradients_at(const Cell &cell, const unsigned int point) const;
+    /// Adds the forces of a cell under nodal displacements.
+    void
+    add_forces(const Cell           &cell,
+               const ExtendedVector &displacement,
+               ExtendedVector       &forces) const;
 
     /// The distance of a point of the rule from the axis.
     long double
     radius(const Cell &cell, const unsigned int point) const;
 
     Stress
-    stress(const Cell                  &cell,
-           const unsigned int           point,
-           const std::vector<Gradient> &gradients,
-           const ExtendedVector        &cartesian_u) const;
+    stress(const Cell &cell, const Stress &gradient) const;
 
     const ElasticProblem<dim> &problem;
     std::vector<Cell>          cells;

@@ -6,6 +6,7 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/correction_solver.h>
+#include <debond/solve/scene.h>
 
 #include <string>
 
@@ -83,15 +84,16 @@ namespace Debond
 
   /// Refines the minimiser @p u, or what rounding left of the way to one, if
   /// rounding in double precision can change more of its energy than
-  /// allowed_energy_rounding().
+  /// allowed_energy_rounding(). What is at rest but for Scene::least_force() is
+  /// left as it is.
   template <int dim>
   Refined
-  refine_where_needed(const ElasticProblem<dim> &problem,
-                      const PiecewiseQuadratic  &phi,
-                      const LoadFactors          factors,
-                      CorrectionSolver          &solver,
-                      const Interruption        &interruption,
-                      DofVector                 &u);
+  refine_where_needed(const Scene<dim>         &scene,
+                      const PiecewiseQuadratic &phi,
+                      const LoadFactors         factors,
+                      CorrectionSolver         &solver,
+                      const Interruption       &interruption,
+                      DofVector                &u);
 } // namespace Debond
 
 #endif

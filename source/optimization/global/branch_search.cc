@@ -98,6 +98,7 @@ namespace Debond
       double                        functional = 0.; ///< where moves start
       double                        rounding;
       unsigned int                  n_pieces = 0;
+      BorderedCholesky              factor; ///< of the last trial
       // States that trials have started from or ended in.
       std::set<PieceState> tried;
 
@@ -260,6 +261,7 @@ namespace Debond
         // starts.
         CondensedProblem trial(problem, next);
         trial.minimise_roughly();
+        trial.factorise_by(factor);
         if (is_start)
           trial.guess_by(problem.guess);
         std::vector<PieceState> way = {start};

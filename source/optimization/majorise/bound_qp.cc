@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interruption.h>
 #include <debond/base/tolerances.h>
-#include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <utility>
@@ -44,14 +44,29 @@ namespace Debond
              const Eigen::VectorXd                   &r,
              const Eigen::VectorXd                   &x)
     {
-      Eigen::Matrix<long double, Eigen::Dynamic, 1> sum = r.cast<long double>();
-      // By columns, as M is stored, and without those that bounds have made
-      // zero.
-      for (Eigen::Index j = 0; j < x.size(); ++j)
-        if (x(j) != 0.)
-          for (Eigen::Index i = 0; i < r.size(); ++i)
-            sum(i) -= static_cast<long double>(M(i, j)) * x(j);
-      return sum.cast<double>();
+      // Columns of M are its rows, some at once so that their sums can stay in
+      // registers, and without what bounds have made zero.
+      constexpr Eigen::Index at_once = 4;
+      const Eigen::Index     n       = r.size();
+      Eigen::VectorXd        result(n);
+      for (Eigen::Index first = 0; first < n; first += at_once)
+        {
+          std::array<const double *, at_once> column;
+          std::array<long double, at_once>    sum;
+          for (Eigen::Index k = 0; k < at_once; ++k)
+            {
+              const Eigen::Index i = std::min(first + k, n - 1);
+              column[k]            = M.col(i).data();
+              sum[k]               = r(i);
+            }
+          for (Eigen::Index j = 0; j < n; ++j)
+            if (x(j) != 0.)
+              for (Eigen::Index k = 0; k < at_once; ++k)
+                sum[k] -= static_cast<long double>(column[k][j]) * x(j);
+          for (Eigen::Index k = 0; k < at_once && first + k < n; ++k)
+            result(first + k) = static_cast<double>(sum[k]);
+        }
+      return result;
     }
 
 
@@ -59,25 +74,19 @@ namespace Debond
     /// Solves M_ff x_f = r_f on the given indices, where x is zero before, for
     /// the other entries of x given; refined by residuals in extended precision
     /// if @p refined. Returns the number of operations. Throws
-    /// NotPositiveDefinite if M_ff is not.
+    /// NotPositiveDefinite if M_ff is not: there is no minimum on these
+    /// components then, and what the caller believes of M is wrong.
     double
     solve_on(const std::vector<unsigned int>         &free,
              const Eigen::Ref<const Eigen::MatrixXd> &M,
              const Eigen::VectorXd                   &r,
              const bool                               refined,
+             BorderedCholesky                        &factor,
              Eigen::VectorXd                         &x)
     {
       if (free.empty())
         return 0.;
-      Eigen::MatrixXd M_free(free.size(), free.size());
-      // The lower triangle is read.
-      for (unsigned int l = 0; l < free.size(); ++l)
-        for (unsigned int k = l; k < free.size(); ++k)
-          M_free(k, l) = M(free[k], free[l]);
-      // Where M_ff is not positive definite there is no minimum on these
-      // components, and what the caller believes of M is wrong.
-      const DenseCholesky factor(std::move(M_free));
-      if (!factor.is_positive_definite())
+      if (!factor.restrict_to(free, M))
         throw NotPositiveDefinite();
 
       Eigen::VectorXd x_free(free.size());
@@ -91,8 +100,11 @@ namespace Debond
       // The first solution, and then what it leaves of the residual: for active
       // components at zero, as most are, r is the residual.
       correct(x.isZero(0.) ? r : Eigen::VectorXd(r - M * x));
+      // Rounding in the border takes some digits.
+      if (factor.has_border() && !refined)
+        correct(r - M * x);
       const double n_free     = static_cast<double>(free.size());
-      double       operations = n_free * n_free * n_free / 3.;
+      double       operations = factor.operations();
       for (unsigned int k = 0; refined && k < largest_number_of_refinements;
            ++k)
         {
@@ -115,6 +127,7 @@ namespace Debond
       const Eigen::VectorXd                   &b;
       ActiveSet                               &active;
       const double                             tolerance;
+      BorderedCholesky                        &factor;
       const unsigned int n      = static_cast<unsigned int>(r.size());
       BoundQPResult      result = {};
 
@@ -122,6 +135,7 @@ namespace Debond
       run()
       {
         result.x = b.array().isFinite().select(b, 0.);
+        factor.compare(M);
         try
           {
             if (!exchange())
@@ -146,7 +160,7 @@ namespace Debond
         Eigen::VectorXd x       = b;
         for (const unsigned int i : free)
           x(i) = 0.;
-        result.operations += solve_on(free, M, r, refined, x) +
+        result.operations += solve_on(free, M, r, refined, factor, x) +
                              operations_per_entry * double(n) * double(n);
         // The multipliers of active bounds, mu = r - M x >= 0 at the minimum;
         // on free components the same is rounding.
@@ -338,8 +352,10 @@ namespace Debond
                  const Eigen::VectorXd                   &r,
                  const Eigen::VectorXd                   &b,
                  ActiveSet                               &active,
-                 const double                             tolerance)
+                 const double                             tolerance,
+                 BorderedCholesky                        *factor)
   {
-    return BoundQP{M, r, b, active, tolerance}.run();
+    BorderedCholesky own;
+    return BoundQP{M, r, b, active, tolerance, factor ? *factor : own}.run();
   }
 } // namespace Debond

@@ -186,7 +186,8 @@ namespace Debond
                      active,
                      is_trial && tolerance >= Tolerance::rough_majorant ?
                        tolerance :
-                       0.);
+                       0.,
+                     factor);
     if (qp.status != SolverStatus::interrupted)
       s = qp.x;
     if (can_be_verified(qp.status) && phi.softens())
@@ -204,8 +205,8 @@ namespace Debond
   void
   CondensedProblem::fall(const Eigen::VectorXd &before)
   {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < s.size(); ++i)
+    std::vector<unsigned int> free;
+    for (unsigned int i = 0; i < s.size(); ++i)
       if (s(i) < upper(i))
         free.push_back(i);
     // All in contact: the majorant has said all.
@@ -216,12 +217,12 @@ namespace Debond
     Eigen::MatrixXd A = S;
     A += phi.second_derivative(s);
     const Eigen::VectorXd force = g - S * s - phi.subgradient(s);
-    const DenseCholesky   factor(A(free, free));
+    const DenseCholesky   factor_of_J(A(free, free));
     Eigen::VectorXd       way;
-    if (factor.is_positive_definite())
+    if (factor_of_J.is_positive_definite())
       {
         way = force(free);
-        factor.solve_in_place(way);
+        factor_of_J.solve_in_place(way);
         // Along what nothing holds the factor, and so the step, is of rounding.
         if (N.cols() > 0 &&
             way.dot(force(free)) <= loose_stiffness * way.squaredNorm())
@@ -231,8 +232,7 @@ namespace Debond
       {
         // M^{-1}(M - A), M of the majorant, is what takes one step of majorants
         // to the next one.
-        const DenseCholesky majorant(M(free, free));
-        if (!majorant.is_positive_definite())
+        if (!factor->restrict_to(free, M))
           return;
         // So its powers lead to the motion along which J is least convex, on
         // which majorants crawl away from a point that is no minimum.
@@ -242,7 +242,7 @@ namespace Debond
              ++k)
           {
             way = rest * (way / way.lpNorm<Eigen::Infinity>());
-            majorant.solve_in_place(way);
+            factor->solve_in_place(way);
           }
         // Downhill.
         if (way.dot(force(free)) < 0.)

@@ -2,6 +2,7 @@
 #ifndef debond_optimization_majorise_bound_qp_h
 #define debond_optimization_majorise_bound_qp_h
 
+#include <debond/linear_algebra/bordered_cholesky.h>
 #include <debond/optimization/status.h>
 
 #include <Eigen/Core>
@@ -71,7 +72,9 @@ namespace Debond
   /**
    * min 1/2 x'M x - r'x subject to x <= b for a dense symmetric positive
    * definite M, started at @p active, which is updated. Each step solves on
-   * the free components with a Cholesky factorisation.
+   * the free components with a Cholesky factorisation, or by that of a step
+   * before. A @p factor can be handed on from problem to problem, whose
+   * matrices may differ in few rows.
    *
    * Wrong indices are exchanged by ActiveSetRule. Matrices of slender bodies,
    * where fourth derivatives count, can make that wander; then projected Newton
@@ -87,7 +90,8 @@ namespace Debond
                  const Eigen::VectorXd                   &r,
                  const Eigen::VectorXd                   &b,
                  ActiveSet                               &active,
-                 const double                             tolerance = 0.);
+                 const double                             tolerance = 0.,
+                 BorderedCholesky                        *factor    = nullptr);
 } // namespace Debond
 
 #endif

@@ -49,6 +49,14 @@ namespace Debond
       guess = other;
     }
 
+    /// From now on majorants are factorised by this one, which knows those of
+    /// problems with the same S.
+    void
+    factorise_by(BorderedCholesky &other)
+    {
+      factor = &other;
+    }
+
     /// From now on a majorant is minimised only to the tolerance that is asked
     /// for, as long as that is a loose one: many trials of a search end where
     /// others have ended, and are not worth more.
@@ -147,6 +155,8 @@ namespace Debond
     Eigen::MatrixXd       M;
     Eigen::VectorXd       r;
     ActiveSet             active;
+    BorderedCholesky      own_factor;
+    BorderedCholesky     *factor   = &own_factor;
     bool                  is_trial = false;
     const ActiveSetGuess *guess    = nullptr;
   };
