@@ -14,6 +14,11 @@ namespace Debond
   {
     constexpr unsigned int maximum_refinement_iterations = 2000;
     constexpr unsigned int maximum_refinement_systems    = 500;
+
+    /// Forces of a body at rest beside Scene::least_force(), 1e-7 of the
+    /// largest load: the rounding of that load, on the long levers of slender
+    /// bodies.
+    constexpr double forces_at_rest = 1e-5;
   } // namespace
 
 
@@ -395,11 +400,15 @@ namespace Debond
                       DofVector                &u)
   {
     const ElasticProblem<dim> &problem = scene.problem();
-    // All forces of a body at rest are rounding, over which active sets wander.
+    // All that is left of a body at rest is rounding, over which active sets
+    // would wander.
     DofVector forces = problem.diagonal();
     forces.scale(u);
-    if (forces.linfty_norm() <= scene.least_force())
-      return {};
+    if (forces.linfty_norm() <= forces_at_rest * scene.least_force())
+      {
+        u = 0.;
+        return {};
+      }
     // What rounding may have changed is compared with twice the strain energy,
     // so that refinement is done only where digits are at stake that are
     // printed.

@@ -84,8 +84,8 @@ namespace Debond
 
   /// Refines the minimiser @p u, or what rounding left of the way to one, if
   /// rounding in double precision can change more of its energy than
-  /// allowed_energy_rounding(). What is at rest but for Scene::least_force() is
-  /// left as it is.
+  /// allowed_energy_rounding(). What is at rest but for rounding becomes
+  /// zero.
   template <int dim>
   Refined
   refine_where_needed(const Scene<dim>         &scene,
