@@ -165,6 +165,10 @@ namespace Debond
     if (border > largest_border * size)
       return false;
 
+    // Sets that wander would keep the columns of all indices.
+    for (auto *columns : {&known_added, &known_removed})
+      if (double(columns->size()) > 2. * largest_border * size)
+        columns->clear();
     // Rows of M_FN at indices that have left do not matter, as x is zero there.
     Y_N = border_columns(
       added,

@@ -57,7 +57,7 @@ namespace Debond
     /// success, stagnated, interrupted, or quadratic_program if there is no
     /// minimum or it was not found.
     SolverStatus status = SolverStatus::quadratic_program;
-    unsigned int steps  = 0; ///< factorisations
+    unsigned int steps  = 0; ///< solutions on a set
 
     /// The cost in multiplications with an addition each: the same on every
     /// machine.
