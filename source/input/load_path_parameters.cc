@@ -136,10 +136,11 @@ namespace Debond
     table.bind_choice(
       "Load path/Global branch",
       load_path.global_branch,
-      {{"none", GlobalBranch::none},
+      {{"automatic", GlobalBranch::automatic},
+       {"none", GlobalBranch::none},
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
-      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (with Displacement factors the default is none), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor, automatic what it finds of it with as much work as the path takes (none with Displacement factors), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
     table.bind(
       "Load path/Arc",
       load_path.arc,
@@ -165,8 +166,7 @@ namespace Debond
         const std::string path = "Load path/Displacement factors";
         if (supports.displacements.empty())
           table.reject(path, "the scene prescribes no displacement");
-        // It takes up to twenty times as long as the path itself, which only
-        // those who ask for it should wait for.
+        // Reactions are wanted of such paths rather than states of less energy.
         if (!load_path.asks_for_branch)
           table.derive(branch, "none", path);
         if (factors.empty())

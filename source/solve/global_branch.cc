@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>
+#include <debond/solve/method_choice.h>
 #include <debond/solve/refinement.h>
+
+#include <cmath>
 
 namespace Debond
 {
   namespace
   {
+    /// The parts of the work that is left that a search may take.
+    constexpr double most_parts = 4.;
+
+
+
     /// The search and the proof at one factor after the other.
     template <int dim>
     class BranchSearch
@@ -18,15 +26,27 @@ namespace Debond
         : parameters(solver_parameters)
         , scene(scene)
         , interruption(interruption)
+        , operations_left(parameters.search_operations)
       {
-        parameters.search = BondSearchChoice::full;
+        // With a limit of work not more than what is worth its time.
+        parameters.method = SolverMethod::automatic;
+        parameters.search = std::isfinite(operations_left) ?
+                              BondSearchChoice::automatic :
+                              BondSearchChoice::full;
         parameters.prove  = false;
       }
 
+      /// One of @p n_left searches that share the work that is left. Many ask
+      /// for less than their part, so that others may have several.
       void
-      search(const LoadFactors factors, BranchPoint &point)
+      search(const LoadFactors factors,
+             const std::size_t n_left,
+             BranchPoint      &point)
       {
+        parameters.search_operations =
+          most_parts * operations_left / double(n_left);
         point.which = improve(parameters, factors, point);
+        operations_left -= point.which.operations;
         // Where nothing is applied or prescribed, no gap either, no energy is
         // negative.
         if (scene.scene.problem().load(factors).linfty_norm() == 0.)
@@ -66,7 +86,8 @@ namespace Debond
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(
             scene.scene.minimisation(parameters.majorise_minimise))
-            .minimize(problem, [this](const auto &) {
+            .minimize(problem, [this](const auto &iteration) {
+              operations_left -= iteration.operations;
               return !interruption.requested();
             });
         // Only a state that is lower by more than rounding is taken; otherwise
@@ -106,6 +127,7 @@ namespace Debond
       SolverParameters           parameters;
       const CondensedScene<dim> &scene;
       const Interruption        &interruption;
+      double                     operations_left;
       BorderedCholesky           factor; ///< of the last step from a neighbour
     };
   } // namespace
@@ -130,7 +152,8 @@ namespace Debond
     // broken). Proofs come last, since a proof about a state that is replaced
     // afterwards would be lost.
     Branch             branch;
-    const BranchPoint *last = nullptr;
+    const BranchPoint *last   = nullptr;
+    std::size_t        n_left = 2 * start.size();
     for (const auto &[factors, given] : start)
       {
         if (interruption.requested())
@@ -138,7 +161,7 @@ namespace Debond
         BranchPoint point = given;
         if (last != nullptr)
           search.start_from(*last, factors, point);
-        search.search(factors, point);
+        search.search(factors, n_left--, point);
         last = &(branch[factors] = point);
         if (!proves)
           monitor(factors, point);
@@ -153,7 +176,8 @@ namespace Debond
         // something new.
         auto &[factors, point] = *entry;
         if (last != nullptr && search.start_from(*last, factors, point))
-          search.search(factors, point);
+          search.search(factors, n_left, point);
+        --n_left;
         if (proves)
           {
             search.prove(factors, point);

@@ -26,6 +26,11 @@ namespace Debond
     /// How often a step is done with new modes of its bonds.
     constexpr unsigned int most_modes = 10;
 
+    /// What a step takes beside the minimisation, mostly for its verification:
+    /// at least, and for each unknown, in the time of a factorisation's
+    /// operations.
+    constexpr double least_of_step = 1e7, of_step = 4000.;
+
 
 
     /// The table of a path in the log: the factors that vary, J, a number and
@@ -232,9 +237,13 @@ namespace Debond
         table.section("global branch");
         const bool proves = parameters.global_branch == GlobalBranch::prove;
         table.titles(proves ? "gap" : "states tried");
+        // A search that was not asked for takes no longer than the path.
+        SolverParameters limited = solver_parameters;
+        if (parameters.global_branch == GlobalBranch::automatic)
+          limited.search_operations = operations_of_path();
         const Branch branch = global_branch(
           parameters.global_branch,
-          solver_parameters,
+          limited,
           condensed_scene,
           followed,
           interruption,
@@ -247,6 +256,18 @@ namespace Debond
                 point.which.search_trials,
               to_string(point.which.kind));
           });
+        const auto n_cut =
+          std::count_if(branch.begin(), branch.end(), [](const auto &entry) {
+            return !entry.second.which.notes.empty();
+          });
+        if (n_cut > 0)
+          table.section(words("the search had as much work as the path takes, "
+                              "which was not enough at ",
+                              n_cut,
+                              " of ",
+                              branch.size(),
+                              " factors; Load path/Global branch = search has "
+                              "no limit"));
         for (const auto &[factors, point] : branch)
           add_global(factors, point);
         if (interruption.requested())
@@ -493,6 +514,21 @@ namespace Debond
       location(const LoadPathStep<dim> &step) const
       {
         return Debond::location(parameters, step);
+      }
+
+      /// As a factorisation, a factor of S for each majorant, and what steps
+      /// take besides. It is the same if the path was cut in two runs.
+      double
+      operations_of_path() const
+      {
+        double n_majorants = 0.;
+        for (const LoadPathStep<dim> &step : steps)
+          n_majorants += step.iterations;
+        return choice.operations +
+               n_majorants / 3. * std::pow(double(points[0].size()), 3.) +
+               double(steps.size()) *
+                 (least_of_step +
+                  of_step * double(scene.problem().unknowns().n_dofs()));
       }
 
       /// Enters a point of the global branch at all steps with its factors.

@@ -225,6 +225,7 @@ namespace Debond
                               scene.ranks()},
                              unknowns.contact().dofs(),
                              dim);
+        choice.operations = cost.operations;
         // The factor, A in it while it is made, S and what is made of it.
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;
         if (choice.linear_solver == LinearSolver::automatic)

@@ -212,6 +212,7 @@ namespace Debond
         // counts.
         const bool is_cut =
           work.requested() && result.kind != MinimumKind::global;
+        result.operations = work.operations();
         if (is_cut || (result.kind != MinimumKind::best_known &&
                        result.kind != MinimumKind::global))
           result.kind = kind_without_search(adhesion, s, &condensed);

@@ -51,16 +51,16 @@ namespace Debond
       done += operations;
     }
 
-    bool
-    is_reached() const
+    double
+    operations() const
     {
-      return done >= most_operations;
+      return done;
     }
 
     bool
     requested() const override
     {
-      return Interruption::requested() || is_reached();
+      return Interruption::requested() || done >= most_operations;
     }
 
   private:

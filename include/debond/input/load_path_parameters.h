@@ -17,8 +17,9 @@ namespace Debond
   enum class GlobalBranch
   {
     none,
-    search, ///< the best minimum that the search finds at each factor
-    prove   ///< and its proof
+    automatic, ///< what a search finds with as much work as the path takes
+    search,    ///< the best minimum that the search finds at each factor
+    prove      ///< and its proof
   };
 
 
@@ -64,7 +65,7 @@ namespace Debond
     std::string
     name(const LoadFactors &factors) const;
 
-    GlobalBranch global_branch = GlobalBranch::search;
+    GlobalBranch global_branch = GlobalBranch::automatic;
 
     /// Asks for the unstable states between those that the path leads to.
     bool arc = false;

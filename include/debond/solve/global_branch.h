@@ -30,10 +30,11 @@ namespace Debond
 
   /**
    * The lowest minima that are known at the factors of @p start, which holds a
-   * minimum for each: the search of the scene, with starts from the neighbours
-   * in the order of LoadFactors, and the proof if it is @p wanted. No
-   * point is above the one in @p start. Factors that were not reached when
-   * @p interruption was requested are left out.
+   * minimum for each: a full search, or if @p parameters limit its operations
+   * searches that share these, with starts from the neighbours in the order of
+   * LoadFactors, and the proof if it is @p wanted. No point is above the one in
+   * @p start. Factors that were not reached when @p interruption was requested
+   * are left out.
    */
   template <int dim>
   Branch

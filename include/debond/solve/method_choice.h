@@ -45,6 +45,9 @@ namespace Debond
     /// Estimate of the program's peak, in bytes.
     double memory = 0.;
 
+    /// Floating point, of the factorisation; 0 if there is none.
+    double operations = 0.;
+
     /// True if multigrid has the coarser meshes of the body, not only A.
     bool has_levels = false;
 
