@@ -133,9 +133,12 @@ def run(program, cases, jobs=None, afresh=False):
               for number in (signal.SIGINT, signal.SIGTERM)}
     while (waiting or running) and not signals:
         while waiting and len(running) < jobs:
-            # Loading the program takes longer than a small scene, but at the
-            # end no process should be left alone with many.
-            share = max(1, len(waiting) // (3 * jobs))
+            # Loading the program takes longer than a small scene: a process gets
+            # as many as take two seconds. But at the end none should be left alone
+            # with many that take long.
+            seconds = jobs * (time.time() - start) / n_done if n_done else 2.
+            share = max(1, len(waiting) // (3 * jobs),
+                        min(int(2. / seconds), -(-len(waiting) // jobs)))
             running.append(Process(program, waiting[:share]))
             waiting = waiting[share:]
         time.sleep(0.02)
