@@ -110,7 +110,8 @@ namespace Debond
     if (!adhesion.memory().empty() && !adhesion.points().is_nodal())
       return open_measure(adhesion, s);
 
-    double sum = 0.;
+    const bool shears = adhesion.shears(); // looks at all points
+    double     sum    = 0.;
     for (const auto &face : boundary.faces)
       {
         const auto threshold = [&](const std::array<double, dim> &coordinates) {
@@ -131,8 +132,7 @@ namespace Debond
           };
         std::array<double, dim> middle;
         middle.fill(1. / dim);
-        if (adhesion.shears() &&
-            adhesion.points().point_at(face, middle).shears())
+        if (shears && adhesion.points().point_at(face, middle).shears())
           {
             sum +=
               face.measure * positive_part_on_pieces<dim>(gap_beyond, density);
