@@ -128,8 +128,9 @@ namespace Debond
       ActiveSet                               &active;
       const double                             tolerance;
       BorderedCholesky                        &factor;
-      const unsigned int n      = static_cast<unsigned int>(r.size());
-      BoundQPResult      result = {};
+      const unsigned int n       = static_cast<unsigned int>(r.size());
+      BoundQPResult      result  = {};
+      bool               refined = false; ///< in extended precision
 
       BoundQPResult
       run()
@@ -156,18 +157,24 @@ namespace Debond
       Eigen::VectorXd
       minimum_on(const std::vector<unsigned int> &free)
       {
-        const bool      refined = result.steps++ >= updates_before_refinement;
-        Eigen::VectorXd x       = b;
+        ++result.steps;
+        Eigen::VectorXd x = b;
         for (const unsigned int i : free)
           x(i) = 0.;
         result.operations += solve_on(free, M, r, refined, factor, x) +
                              operations_per_entry * double(n) * double(n);
         // The multipliers of active bounds, mu = r - M x >= 0 at the minimum;
         // on free components the same is rounding.
-        result.mu = refined ? residual(M, r, x) : r - M * x;
+        result.mu = force_at(x);
         for (const unsigned int i : free)
           result.mu(i) = 0.;
         return x;
+      }
+
+      Eigen::VectorXd
+      force_at(const Eigen::VectorXd &x) const
+      {
+        return refined ? residual(M, r, x) : r - M * x;
       }
 
       bool
@@ -203,15 +210,18 @@ namespace Debond
           result.status = status;
       }
 
-      /// Whether the projection of x onto x <= b meets the optimality
-      /// conditions to the tolerance.
+      /// Whether the projection of the last point onto x <= b meets the
+      /// optimality conditions to the tolerance.
       bool
-      is_near(const Eigen::VectorXd &x) const
+      is_near() const
       {
         // Free components need no force, those at their bounds one that
-        // presses.
-        const Eigen::VectorXd projected = x.cwiseMin(b);
-        const Eigen::VectorXd force     = r - M * projected;
+        // presses. Few move by the projection.
+        const Eigen::VectorXd projected = result.x.cwiseMin(b);
+        Eigen::VectorXd       force     = result.mu;
+        for (unsigned int i = 0; i < n; ++i)
+          if (projected(i) < result.x(i))
+            force += M.col(i) * (result.x(i) - projected(i));
         return (projected.array() < b.array())
                  .select(force.cwiseAbs(), -force)
                  .maxCoeff() <= tolerance * r.lpNorm<Eigen::Infinity>();
@@ -229,13 +239,14 @@ namespace Debond
             for (unsigned int i = 0; i < n; ++i)
               if (active[i] == 0)
                 free.push_back(i);
+            refined  = result.steps >= updates_before_refinement;
             result.x = minimum_on(free);
             if (rule.update(result.x - b,
                             result.mu,
                             noise(result.x),
                             force_noise(result.x),
                             active) == 0 ||
-                (tolerance > 0. && !rule.wanders() && is_near(result.x)))
+                (tolerance > 0. && !rule.wanders() && is_near()))
               {
                 end(SolverStatus::success);
                 return true;
@@ -252,9 +263,10 @@ namespace Debond
         // the Newton step for the others is followed along its projection onto
         // x <= b, as far as the functional falls. So it cannot wander.
         Eigen::VectorXd x = result.x.cwiseMin(b);
+        refined           = false;
         while (is_within_limits())
           {
-            const Eigen::VectorXd     force    = residual(M, r, x);
+            const Eigen::VectorXd     force    = force_at(x);
             const double              mu_noise = force_noise(x);
             std::vector<unsigned int> free;
             for (unsigned int i = 0; i < n; ++i)
@@ -274,6 +286,8 @@ namespace Debond
               }
             if (!step(result.x - x, force, x))
               {
+                if (std::exchange(refined, true) == false)
+                  continue;
                 // Rounding hides the descent: the best that there is in
                 // doubles.
                 result.x = x;
