@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/certify/certificate.h>
 #include <debond/certify/exact_energy.h>
 #include <debond/certify/positive_part.h>
@@ -7,10 +8,7 @@
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <sstream>
 
 namespace Debond
 {
@@ -655,8 +653,6 @@ namespace Debond
 
 
 
-  template decltype(check_certifiable<2>) check_certifiable<2>;
-  template decltype(check_certifiable<3>) check_certifiable<3>;
-  template class Certifier<2>;
-  template class Certifier<3>;
+  DEBOND_INSTANTIATE(check_certifiable);
+  DEBOND_INSTANTIATE_CLASS(Certifier);
 } // namespace Debond

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/certify/certification.h>
 #include <debond/input/bad_input.h>
 #include <debond/output/csv_table.h>
 
-#include <algorithm>
-#include <iomanip>
 #include <new>
-#include <sstream>
 
 namespace Debond
 {
@@ -382,6 +380,5 @@ namespace Debond
 
 
 
-  template class Certification<2>;
-  template class Certification<3>;
+  DEBOND_INSTANTIATE_CLASS(Certification);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/certify/equilibrium_element.h>
 
 #include <Eigen/Cholesky>
@@ -321,10 +322,7 @@ namespace Debond
 
 
 
-  template struct SimplexGeometry<2>;
-  template struct SimplexGeometry<3>;
-  template decltype(complementary_energy<2>) complementary_energy<2>;
-  template decltype(complementary_energy<3>) complementary_energy<3>;
-  template struct EquilibriumElement<2>;
-  template struct EquilibriumElement<3>;
+  DEBOND_INSTANTIATE_CLASS(SimplexGeometry);
+  DEBOND_INSTANTIATE(complementary_energy);
+  DEBOND_INSTANTIATE_CLASS(EquilibriumElement);
 } // namespace Debond

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/equilibrium_mesh.h>
 #include <debond/certify/side_moments.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/mesh/field_value.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
 
 namespace Debond
 {
@@ -400,8 +397,6 @@ namespace Debond
 
 
 
-  template decltype(check_supports<2>) check_supports<2>;
-  template decltype(check_supports<3>) check_supports<3>;
-  template struct EquilibriumMesh<2>;
-  template struct EquilibriumMesh<3>;
+  DEBOND_INSTANTIATE(check_supports);
+  DEBOND_INSTANTIATE_CLASS(EquilibriumMesh);
 } // namespace Debond

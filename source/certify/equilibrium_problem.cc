@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/numbers.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/equilibrium_problem.h>
 #include <debond/certify/side_moments.h>
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
 
 namespace Debond
@@ -468,8 +465,6 @@ namespace Debond
 
 
 
-  template class EquilibriumProblem<2>;
-  template class EquilibriumProblem<3>;
-  template decltype(strain_energies<2>) strain_energies<2>;
-  template decltype(strain_energies<3>) strain_energies<3>;
+  DEBOND_INSTANTIATE_CLASS(EquilibriumProblem);
+  DEBOND_INSTANTIATE(strain_energies);
 } // namespace Debond

@@ -3,9 +3,6 @@
 
 #include <debond/certify/exact_energy.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   namespace

@@ -4,10 +4,6 @@
 #include <debond/certify/side_ranges.h>
 #include <debond/certify/trace_constant.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
 #include <numeric>
 
 namespace Debond

@@ -4,11 +4,6 @@
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 namespace Debond
 {
   namespace

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/side_moments.h>
 #include <debond/elasticity/load_vector.h>
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace Debond
 {
@@ -142,12 +140,8 @@ namespace Debond
 
 
 
-  template class SideDisplacement<2>;
-  template class SideDisplacement<3>;
-  template decltype(side_rule<2>)     side_rule<2>;
-  template decltype(side_rule<3>)     side_rule<3>;
-  template decltype(side_unknowns<2>) side_unknowns<2>;
-  template decltype(side_unknowns<3>) side_unknowns<3>;
-  template decltype(side_traction<2>) side_traction<2>;
-  template decltype(side_traction<3>) side_traction<3>;
+  DEBOND_INSTANTIATE_CLASS(SideDisplacement);
+  DEBOND_INSTANTIATE(side_rule);
+  DEBOND_INSTANTIATE(side_unknowns);
+  DEBOND_INSTANTIATE(side_traction);
 } // namespace Debond

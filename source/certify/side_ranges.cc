@@ -3,10 +3,6 @@
 #include <debond/certify/side_ranges.h>
 #include <debond/optimization/global/node_bound.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace Debond
 {
   namespace

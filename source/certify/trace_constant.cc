@@ -8,9 +8,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   namespace

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/simplex_parts.h>
 
-#include <algorithm>
-#include <array>
-#include <map>
 #include <numeric>
 
 namespace Debond
@@ -220,10 +218,7 @@ namespace Debond
 
 
 
-  template decltype(fronts<2>)             fronts<2>;
-  template decltype(fronts<3>)             fronts<3>;
-  template decltype(broken_zone<2>)        broken_zone<2>;
-  template decltype(broken_zone<3>)        broken_zone<3>;
-  template decltype(zone_without_bonds<2>) zone_without_bonds<2>;
-  template decltype(zone_without_bonds<3>) zone_without_bonds<3>;
+  DEBOND_INSTANTIATE(fronts);
+  DEBOND_INSTANTIATE(broken_zone);
+  DEBOND_INSTANTIATE(zone_without_bonds);
 } // namespace Debond

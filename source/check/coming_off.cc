@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/check/coming_off.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/polar_cone.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 namespace Debond
 {
@@ -117,6 +113,5 @@ namespace Debond
 
 
 
-  template decltype(coming_off<2>) coming_off<2>;
-  template decltype(coming_off<3>) coming_off<3>;
+  DEBOND_INSTANTIATE(coming_off);
 } // namespace Debond

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/auto_derivative_function.h>
-#include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/check/displacement_error.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
-
-#include <cmath>
-#include <stdexcept>
-#include <vector>
 
 namespace Debond
 {
@@ -118,6 +114,5 @@ namespace Debond
 
 
 
-  template decltype(displacement_error<2>) displacement_error<2>;
-  template decltype(displacement_error<3>) displacement_error<3>;
+  DEBOND_INSTANTIATE(displacement_error);
 } // namespace Debond

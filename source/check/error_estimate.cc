@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
 #include <unordered_map>
 
 namespace Debond
@@ -693,6 +687,5 @@ namespace Debond
 
 
 
-  template decltype(estimate_error<2>) estimate_error<2>;
-  template decltype(estimate_error<3>) estimate_error<3>;
+  DEBOND_INSTANTIATE(estimate_error);
 } // namespace Debond

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_tools.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/owned_cells.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -222,12 +218,8 @@ namespace Debond
 
 
 
-  template decltype(sliding_notes<2>)           sliding_notes<2>;
-  template decltype(sliding_notes<3>)           sliding_notes<3>;
-  template decltype(bond_notes<2>)              bond_notes<2>;
-  template decltype(bond_notes<3>)              bond_notes<3>;
-  template decltype(faces_in_softening_zone<2>) faces_in_softening_zone<2>;
-  template decltype(faces_in_softening_zone<3>) faces_in_softening_zone<3>;
-  template decltype(largest_values<2>)          largest_values<2>;
-  template decltype(largest_values<3>)          largest_values<3>;
+  DEBOND_INSTANTIATE(sliding_notes);
+  DEBOND_INSTANTIATE(bond_notes);
+  DEBOND_INSTANTIATE(faces_in_softening_zone);
+  DEBOND_INSTANTIATE(largest_values);
 } // namespace Debond

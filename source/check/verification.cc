@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 #include <debond/contact/adhesion_sums.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -819,8 +815,6 @@ namespace Debond
 
 
 
-  template struct Verification<2>;
-  template struct Verification<3>;
-  template decltype(verify<2>) verify<2>;
-  template decltype(verify<3>) verify<3>;
+  DEBOND_INSTANTIATE_CLASS(Verification);
+  DEBOND_INSTANTIATE(verify);
 } // namespace Debond

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/contact/adhesion_integral.h>
 
-#include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace Debond
@@ -552,6 +551,5 @@ namespace Debond
 
 
 
-  template class AdhesionIntegral<2>;
-  template class AdhesionIntegral<3>;
+  DEBOND_INSTANTIATE_CLASS(AdhesionIntegral);
 } // namespace Debond

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/contact/adhesion_sums.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
@@ -200,20 +198,12 @@ namespace Debond
 
 
 
-  template decltype(open_measure<2>)            open_measure<2>;
-  template decltype(open_measure<3>)            open_measure<3>;
-  template decltype(held_forces<2>)             held_forces<2>;
-  template decltype(held_forces<3>)             held_forces<3>;
-  template decltype(traction<2>)                traction<2>;
-  template decltype(traction<3>)                traction<3>;
-  template decltype(node_tractions<2>)          node_tractions<2>;
-  template decltype(node_tractions<3>)          node_tractions<3>;
-  template decltype(shear_damage<2>)            shear_damage<2>;
-  template decltype(shear_damage<3>)            shear_damage<3>;
-  template decltype(is_at_drop<2>)              is_at_drop<2>;
-  template decltype(is_at_drop<3>)              is_at_drop<3>;
-  template decltype(least_second_derivative<2>) least_second_derivative<2>;
-  template decltype(least_second_derivative<3>) least_second_derivative<3>;
-  template decltype(lumped_weights<2>)          lumped_weights<2>;
-  template decltype(lumped_weights<3>)          lumped_weights<3>;
+  DEBOND_INSTANTIATE(open_measure);
+  DEBOND_INSTANTIATE(held_forces);
+  DEBOND_INSTANTIATE(traction);
+  DEBOND_INSTANTIATE(node_tractions);
+  DEBOND_INSTANTIATE(shear_damage);
+  DEBOND_INSTANTIATE(is_at_drop);
+  DEBOND_INSTANTIATE(least_second_derivative);
+  DEBOND_INSTANTIATE(lumped_weights);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/bond_field.h>
 #include <debond/mesh/field_value.h>
@@ -68,6 +69,5 @@ namespace Debond
 
 
 
-  template class BondField<2>;
-  template class BondField<3>;
+  DEBOND_INSTANTIATE_CLASS(BondField);
 } // namespace Debond

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-
-#include <algorithm>
-#include <set>
 
 namespace Debond
 {
@@ -136,6 +134,5 @@ namespace Debond
 
 
 
-  template decltype(coarsen<2>) coarsen<2>;
-  template decltype(coarsen<3>) coarsen<3>;
+  DEBOND_INSTANTIATE(coarsen);
 } // namespace Debond

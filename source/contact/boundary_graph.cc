@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/contact/boundary_graph.h>
 
 namespace Debond
@@ -21,6 +22,5 @@ namespace Debond
 
 
 
-  template decltype(neighbours<2>) neighbours<2>;
-  template decltype(neighbours<3>) neighbours<3>;
+  DEBOND_INSTANTIATE(neighbours);
 } // namespace Debond

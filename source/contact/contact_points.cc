@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/contact/contact_points.h>
 
 #include <Eigen/QR>
-
-#include <cmath>
 
 namespace Debond
 {
@@ -416,6 +415,5 @@ namespace Debond
 
 
 
-  template class ContactPoints<2>;
-  template class ContactPoints<3>;
+  DEBOND_INSTANTIATE_CLASS(ContactPoints);
 } // namespace Debond

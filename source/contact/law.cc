@@ -2,17 +2,12 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/parameter_table.h>
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
-#include <debond/contact/law.h>
 #include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/softening.h>
 #include <debond/contact/laws/winkler.h>
 
-#include <algorithm>
-#include <cmath>
-#include <set>
 #include <stdexcept>
 
 namespace Debond

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/contact/quadrature.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -169,6 +169,5 @@ namespace Debond
 
 
 
-  template class ContactQuadrature<2>;
-  template class ContactQuadrature<3>;
+  DEBOND_INSTANTIATE_CLASS(ContactQuadrature);
 } // namespace Debond

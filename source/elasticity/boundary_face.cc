@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/ranks.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/mesh/owned_cells.h>
 
 #include <boost/serialization/array.hpp>
-
-#include <algorithm>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -83,6 +80,5 @@ namespace Debond
 
 
 
-  template decltype(boundary_faces<2>) boundary_faces<2>;
-  template decltype(boundary_faces<3>) boundary_faces<3>;
+  DEBOND_INSTANTIATE(boundary_faces);
 } // namespace Debond

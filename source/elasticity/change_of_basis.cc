@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/change_of_basis.h>
-
-#include <algorithm>
 
 namespace Debond
 {
@@ -119,6 +118,5 @@ namespace Debond
 
 
 
-  template class ChangeOfBasis<2>;
-  template class ChangeOfBasis<3>;
+  DEBOND_INSTANTIATE_CLASS(ChangeOfBasis);
 } // namespace Debond

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/constrained_dofs.h>
 #include <debond/elasticity/contact_frame.h>
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace Debond
 {
@@ -120,6 +119,5 @@ namespace Debond
 
 
 
-  template class ConstrainedDofs<2>;
-  template class ConstrainedDofs<3>;
+  DEBOND_INSTANTIATE_CLASS(ConstrainedDofs);
 } // namespace Debond

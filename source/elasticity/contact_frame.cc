@@ -3,6 +3,7 @@
 #include <deal.II/base/numbers.h>
 
 #include <debond/base/entry_error.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 
@@ -11,7 +12,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -130,8 +130,7 @@ namespace Debond
 
 
 
-  template struct VertexNormals<2>;
-  template struct VertexNormals<3>;
+  DEBOND_INSTANTIATE_CLASS(VertexNormals);
   template dealii::Tensor<2, 2>
   contact_frame(const std::vector<dealii::Tensor<1, 2>> &);
   template dealii::Tensor<2, 3>

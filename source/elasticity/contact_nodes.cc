@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/mesh/field_value.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <numeric>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -596,6 +591,5 @@ namespace Debond
 
 
 
-  template decltype(make_contact_space<2>) make_contact_space<2>;
-  template decltype(make_contact_space<3>) make_contact_space<3>;
+  DEBOND_INSTANTIATE(make_contact_space);
 } // namespace Debond

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/contact_space.h>
-
-#include <algorithm>
 
 namespace Debond
 {
@@ -65,6 +64,5 @@ namespace Debond
 
 
 
-  template class ContactSpace<2>;
-  template class ContactSpace<3>;
+  DEBOND_INSTANTIATE_CLASS(ContactSpace);
 } // namespace Debond

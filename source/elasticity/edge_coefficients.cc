@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/edge_coefficients.h>
-
-#include <set>
 
 namespace Debond
 {
@@ -26,6 +25,5 @@ namespace Debond
 
 
 
-  template decltype(edge_coefficients<2>) edge_coefficients<2>;
-  template decltype(edge_coefficients<3>) edge_coefficients<3>;
+  DEBOND_INSTANTIATE(edge_coefficients);
 } // namespace Debond

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/full_matrix.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
 
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
-
-#include <algorithm>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {
@@ -410,6 +406,5 @@ namespace Debond
 
 
 
-  template class ElasticProblem<2>;
-  template class ElasticProblem<3>;
+  DEBOND_INSTANTIATE_CLASS(ElasticProblem);
 } // namespace Debond

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/fields.h>
 #include <debond/mesh/owned_cells.h>
 
 #include <boost/accumulators/accumulators.hpp>
 #include <boost/accumulators/statistics/stats.hpp>
 #include <boost/accumulators/statistics/sum_kahan.hpp>
-
-#include <cmath>
-#include <limits>
-#include <vector>
 
 namespace Debond
 {
@@ -327,8 +324,6 @@ namespace Debond
 
 
 
-  template class ElasticFields<2>;
-  template class ElasticFields<3>;
-  template class CellStresses<2>;
-  template class CellStresses<3>;
+  DEBOND_INSTANTIATE_CLASS(ElasticFields);
+  DEBOND_INSTANTIATE_CLASS(CellStresses);
 } // namespace Debond

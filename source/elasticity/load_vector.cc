@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <debond/base/ranks.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/load_vector.h>
@@ -12,10 +11,6 @@
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/mesh/simplex_parts.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace Debond
 {
@@ -348,12 +343,8 @@ namespace Debond
 
 
 
-  template struct Traction<2>;
-  template struct Traction<3>;
-  template struct Loads<2>;
-  template struct Loads<3>;
-  template decltype(face_rule<2>)   face_rule<2>;
-  template decltype(face_rule<3>)   face_rule<3>;
-  template decltype(load_vector<2>) load_vector<2>;
-  template decltype(load_vector<3>) load_vector<3>;
+  DEBOND_INSTANTIATE_CLASS(Traction);
+  DEBOND_INSTANTIATE_CLASS(Loads);
+  DEBOND_INSTANTIATE(face_rule);
+  DEBOND_INSTANTIATE(load_vector);
 } // namespace Debond

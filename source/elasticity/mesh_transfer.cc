@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/mesh/cell_search.h>
 #include <debond/mesh/owned_cells.h>
-
-#include <algorithm>
-#include <array>
-#include <vector>
 
 namespace Debond
 {
@@ -123,8 +120,6 @@ namespace Debond
 
 
 
-  template decltype(divided_displacement<2>)     divided_displacement<2>;
-  template decltype(divided_displacement<3>)     divided_displacement<3>;
-  template decltype(interpolate_displacement<2>) interpolate_displacement<2>;
-  template decltype(interpolate_displacement<3>) interpolate_displacement<3>;
+  DEBOND_INSTANTIATE(divided_displacement);
+  DEBOND_INSTANTIATE(interpolate_displacement);
 } // namespace Debond

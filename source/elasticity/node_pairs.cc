@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/node_pairs.h>
 #include <debond/mesh/field_value.h>
-
-#include <algorithm>
-#include <map>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -53,6 +50,5 @@ namespace Debond
 
 
 
-  template class NodePairs<2>;
-  template class NodePairs<3>;
+  DEBOND_INSTANTIATE_CLASS(NodePairs);
 } // namespace Debond

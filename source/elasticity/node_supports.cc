@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/mesh/field_value.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <stdexcept>
-#include <string>
-#include <utility>
 
 namespace Debond
 {
@@ -332,8 +326,6 @@ namespace Debond
 
 
 
-  template struct PrescribedNode<2>;
-  template struct PrescribedNode<3>;
-  template class NodeSupports<2>;
-  template class NodeSupports<3>;
+  DEBOND_INSTANTIATE_CLASS(PrescribedNode);
+  DEBOND_INSTANTIATE_CLASS(NodeSupports);
 } // namespace Debond

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/probes.h>
 #include <debond/mesh/cell_search.h>
 #include <debond/mesh/owned_cells.h>
-
-#include <algorithm>
 
 namespace Debond
 {
@@ -230,8 +228,6 @@ namespace Debond
 
 
 
-  template class Probes<2>;
-  template class Probes<3>;
-  template decltype(means_of_pieces<2>) means_of_pieces<2>;
-  template decltype(means_of_pieces<3>) means_of_pieces<3>;
+  DEBOND_INSTANTIATE_CLASS(Probes);
+  DEBOND_INSTANTIATE(means_of_pieces);
 } // namespace Debond

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/prolongations.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/utility.hpp>
 
-#include <algorithm>
-#include <map>
 #include <numeric>
-#include <utility>
 
 namespace Debond
 {
@@ -249,6 +247,5 @@ namespace Debond
 
 
 
-  template decltype(prolongations<2>) prolongations<2>;
-  template decltype(prolongations<3>) prolongations<3>;
+  DEBOND_INSTANTIATE(prolongations);
 } // namespace Debond

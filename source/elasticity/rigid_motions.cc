@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/rigid_motions.h>
 
@@ -151,8 +152,6 @@ namespace Debond
 
 
 
-  template struct RigidMotion<2>;
-  template struct RigidMotion<3>;
-  template decltype(free_rigid_motions<2>) free_rigid_motions<2>;
-  template decltype(free_rigid_motions<3>) free_rigid_motions<3>;
+  DEBOND_INSTANTIATE_CLASS(RigidMotion);
+  DEBOND_INSTANTIATE(free_rigid_motions);
 } // namespace Debond

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/simplex_values.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
@@ -67,6 +67,5 @@ namespace Debond
 
 
 
-  template class SimplexValues<2>;
-  template class SimplexValues<3>;
+  DEBOND_INSTANTIATE_CLASS(SimplexValues);
 } // namespace Debond

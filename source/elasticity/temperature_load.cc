@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/mesh/field_value.h>
@@ -103,8 +103,6 @@ namespace Debond
 
 
 
-  template decltype(temperature_changes<2>) temperature_changes<2>;
-  template decltype(temperature_changes<3>) temperature_changes<3>;
-  template decltype(add_thermal_forces<2>)  add_thermal_forces<2>;
-  template decltype(add_thermal_forces<3>)  add_thermal_forces<3>;
+  DEBOND_INSTANTIATE(temperature_changes);
+  DEBOND_INSTANTIATE(add_thermal_forces);
 } // namespace Debond

@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/edge_coefficients.h>
@@ -9,13 +10,8 @@
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <map>
 #include <numeric>
-#include <set>
-#include <stdexcept>
-#include <string>
 
 namespace Debond
 {
@@ -414,6 +410,5 @@ namespace Debond
 
 
 
-  template class ElasticUnknowns<2>;
-  template class ElasticUnknowns<3>;
+  DEBOND_INSTANTIATE_CLASS(ElasticUnknowns);
 } // namespace Debond

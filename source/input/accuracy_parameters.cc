@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/parameter_table.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/input/load_parameters.h>
 

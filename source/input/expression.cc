@@ -3,6 +3,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/entry_error.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/input/expression.h>
 
@@ -13,9 +14,6 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <vector>
 
 namespace Debond
 {
@@ -250,6 +248,5 @@ namespace Debond
 
 
   template decltype(make_function<1>) make_function<1>;
-  template decltype(make_function<2>) make_function<2>;
-  template decltype(make_function<3>) make_function<3>;
+  DEBOND_INSTANTIATE(make_function);
 } // namespace Debond

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <regex>
-#include <stdexcept>
-#include <utility>
 
 namespace Debond
 {

@@ -4,10 +4,7 @@
 #include <debond/input/material_parameters.h>
 
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <stdexcept>
-#include <vector>
 
 namespace Debond
 {

@@ -5,11 +5,7 @@
 #include <debond/input/mesh_parameters.h>
 #include <debond/mesh/field_value.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <stdexcept>
-#include <utility>
 
 namespace Debond
 {

@@ -10,9 +10,6 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
-#include <set>
-#include <sstream>
-#include <tuple>
 
 namespace Debond
 {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/input/probe_parameters.h>
-
-#include <stdexcept>
 
 namespace Debond
 {
@@ -118,6 +117,5 @@ namespace Debond
 
 
 
-  template decltype(make_probes<2>) make_probes<2>;
-  template decltype(make_probes<3>) make_probes<3>;
+  DEBOND_INSTANTIATE(make_probes);
 } // namespace Debond

@@ -3,10 +3,6 @@
 
 #include <debond/input/solver_parameters.h>
 
-#include <algorithm>
-#include <stdexcept>
-#include <thread>
-
 namespace Debond
 {
   namespace

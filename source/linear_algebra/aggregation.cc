@@ -8,9 +8,6 @@
 #include <ml_epetra_utils.h>
 #include <ml_utils.h>
 
-#include <algorithm>
-#include <memory>
-
 namespace Debond
 {
   const bool has_aggregation = true;

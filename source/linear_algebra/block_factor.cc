@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/array_view.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/lapack_templates.h>
 
 #include <debond/linear_algebra/block_factor.h>
-
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -4,13 +4,10 @@
 
 #include <cholmod.h>
 
-#include <algorithm>
 #include <cmath>
 #include <new>
 #include <optional>
 #include <set>
-#include <stdexcept>
-#include <string>
 
 namespace Debond
 {

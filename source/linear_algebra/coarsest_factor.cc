@@ -2,13 +2,11 @@
 #include <deal.II/base/array_view.h>
 #include <deal.II/base/mpi.h>
 
-#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/coarsest_factor.h>
 #include <debond/linear_algebra/multigrid_level.h>
 
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
 namespace Debond
 {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/linear_algebra/distributed_matrix.h>
 
-#include <algorithm>
-
 namespace Debond
 {
   DistributedMatrix::DistributedMatrix(const MatrixOnRanks &A)

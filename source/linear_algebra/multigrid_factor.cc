@@ -7,7 +7,6 @@
 #include <debond/linear_algebra/stagnation.h>
 
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace Debond

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/array_view.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/lapack_templates.h>
 
 #include <debond/base/memory.h>
@@ -12,8 +11,6 @@
 #include <new>
 #include <numeric>
 #include <set>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace Debond

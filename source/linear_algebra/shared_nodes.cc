@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 
 #include <debond/base/ranks.h>
 #include <debond/linear_algebra/shared_nodes.h>
 
-#include <algorithm>
-#include <functional>
 #include <tuple>
 
 namespace Debond

@@ -2,8 +2,6 @@
 #include <debond/linear_algebra/galerkin_product.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/mesh/bisected_body.h>
 
 namespace Debond
@@ -34,6 +35,5 @@ namespace Debond
 
 
 
-  template class BisectedBody<2>;
-  template class BisectedBody<3>;
+  DEBOND_INSTANTIATE_CLASS(BisectedBody);
 } // namespace Debond

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/tensor.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/mesh/bisection.h>
 #include <debond/mesh/mesh_data.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -377,6 +377,5 @@ namespace Debond
 
 
 
-  template class Bisection<2>;
-  template class Bisection<3>;
+  DEBOND_INSTANTIATE_CLASS(Bisection);
 } // namespace Debond

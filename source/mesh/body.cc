@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
-#include <debond/mesh/body.h>
 #include <debond/mesh/cell_search.h>
 #include <debond/mesh/cuts.h>
 #include <debond/mesh/parts.h>
-
-#include <algorithm>
-#include <utility>
 
 namespace Debond
 {
@@ -178,6 +175,5 @@ namespace Debond
 
 
 
-  template class Body<2>;
-  template class Body<3>;
+  DEBOND_INSTANTIATE_CLASS(Body);
 } // namespace Debond

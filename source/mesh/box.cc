@@ -4,13 +4,11 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/physics/transformations.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/mesh/box.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -269,12 +267,8 @@ namespace Debond
 
 
 
-  template decltype(rotation_matrix<2>) rotation_matrix<2>;
-  template decltype(rotation_matrix<3>) rotation_matrix<3>;
-  template decltype(box_sides<2>)       box_sides<2>;
-  template decltype(box_sides<3>)       box_sides<3>;
-  template decltype(part_of_box<2>)     part_of_box<2>;
-  template decltype(part_of_box<3>)     part_of_box<3>;
-  template class Box<2>;
-  template class Box<3>;
+  DEBOND_INSTANTIATE(rotation_matrix);
+  DEBOND_INSTANTIATE(box_sides);
+  DEBOND_INSTANTIATE(part_of_box);
+  DEBOND_INSTANTIATE_CLASS(Box);
 } // namespace Debond

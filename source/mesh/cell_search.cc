@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/mesh/cell_search.h>
 #include <debond/mesh/owned_cells.h>
-
-#include <algorithm>
-#include <limits>
 
 namespace Debond
 {
@@ -94,8 +92,6 @@ namespace Debond
 
 
 
-  template decltype(barycentric_coordinates<2>) barycentric_coordinates<2>;
-  template decltype(barycentric_coordinates<3>) barycentric_coordinates<3>;
-  template class CellSearch<2>;
-  template class CellSearch<3>;
+  DEBOND_INSTANTIATE(barycentric_coordinates);
+  DEBOND_INSTANTIATE_CLASS(CellSearch);
 } // namespace Debond

@@ -3,10 +3,10 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/mesh/crossed_mesh.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -157,8 +157,6 @@ namespace Debond
 
 
 
-  template class CellCrossing<2>;
-  template class CellCrossing<3>;
-  template decltype(crossed_subdivision<2>) crossed_subdivision<2>;
-  template decltype(crossed_subdivision<3>) crossed_subdivision<3>;
+  DEBOND_INSTANTIATE_CLASS(CellCrossing);
+  DEBOND_INSTANTIATE(crossed_subdivision);
 } // namespace Debond

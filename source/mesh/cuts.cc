@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/mesh/cuts.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/mesh_data.h>
-
-#include <algorithm>
-#include <array>
-#include <map>
-#include <set>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -226,6 +221,5 @@ namespace Debond
 
 
 
-  template decltype(cut_into_bodies<2>) cut_into_bodies<2>;
-  template decltype(cut_into_bodies<3>) cut_into_bodies<3>;
+  DEBOND_INSTANTIATE(cut_into_bodies);
 } // namespace Debond

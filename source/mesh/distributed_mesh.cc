@@ -2,8 +2,8 @@
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/tria_description.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/mesh/box.h>
@@ -14,10 +14,7 @@
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 
-#include <algorithm>
 #include <cstdint>
-#include <set>
-#include <utility>
 
 namespace Debond
 {
@@ -255,6 +252,5 @@ namespace Debond
 
 
 
-  template decltype(make_distributed_mesh<2>) make_distributed_mesh<2>;
-  template decltype(make_distributed_mesh<3>) make_distributed_mesh<3>;
+  DEBOND_INSTANTIATE(make_distributed_mesh);
 } // namespace Debond

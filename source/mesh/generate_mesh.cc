@@ -2,13 +2,12 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/grid/grid_generator.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/mesh/source_mesh.h>
 
 #include <boost/algorithm/string/replace.hpp>
 
-#include <memory>
 #include <sstream>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -78,8 +77,6 @@ namespace Debond
 
 
 
-  template struct SourceMesh<2>;
-  template struct SourceMesh<3>;
-  template decltype(generate_mesh<2>) generate_mesh<2>;
-  template decltype(generate_mesh<3>) generate_mesh<3>;
+  DEBOND_INSTANTIATE_CLASS(SourceMesh);
+  DEBOND_INSTANTIATE(generate_mesh);
 } // namespace Debond

@@ -3,20 +3,16 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/mesh/crossed_mesh.h>
-#include <debond/mesh/gmsh_file.h>
 #include <debond/mesh/source_mesh.h>
 
 #include <boost/algorithm/string.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <sstream>
-#include <stdexcept>
 #include <tuple>
 #include <unordered_map>
 
@@ -553,6 +549,5 @@ namespace Debond
 
 
 
-  template decltype(read_gmsh_mesh<2>) read_gmsh_mesh<2>;
-  template decltype(read_gmsh_mesh<3>) read_gmsh_mesh<3>;
+  DEBOND_INSTANTIATE(read_gmsh_mesh);
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_tools.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/mesh/make_body.h>
 #include <debond/mesh/mesh_body.h>
 
@@ -47,6 +48,5 @@ namespace Debond
 
 
 
-  template decltype(make_body<2>) make_body<2>;
-  template decltype(make_body<3>) make_body<3>;
+  DEBOND_INSTANTIATE(make_body);
 } // namespace Debond

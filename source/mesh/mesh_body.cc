@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/mesh_body.h>
 
@@ -63,6 +64,5 @@ namespace Debond
 
 
 
-  template class MeshBody<2>;
-  template class MeshBody<3>;
+  DEBOND_INSTANTIATE_CLASS(MeshBody);
 } // namespace Debond

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/mesh/parts.h>
 
 #include <algorithm>
-#include <set>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -181,6 +180,5 @@ namespace Debond
 
 
 
-  template decltype(name_parts<2>) name_parts<2>;
-  template decltype(name_parts<3>) name_parts<3>;
+  DEBOND_INSTANTIATE(name_parts);
 } // namespace Debond

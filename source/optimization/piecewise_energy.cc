@@ -2,8 +2,6 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/piecewise_energy.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace Debond

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/stationary_path.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   StationaryPath::StationaryPath(const Problem    &problem,

@@ -3,6 +3,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
@@ -272,6 +273,5 @@ namespace Debond
 
 
 
-  template class LoadPathOutput<2>;
-  template class LoadPathOutput<3>;
+  DEBOND_INSTANTIATE_CLASS(LoadPathOutput);
 } // namespace Debond

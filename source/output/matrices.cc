@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/output/matrices.h>
 
 #include <boost/serialization/utility.hpp>
-
-#include <Eigen/SparseCore>
-
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <utility>
 
 namespace Debond
 {
@@ -245,6 +237,5 @@ namespace Debond
 
 
 
-  template decltype(matrix_files<2>) matrix_files<2>;
-  template decltype(matrix_files<3>) matrix_files<3>;
+  DEBOND_INSTANTIATE(matrix_files);
 } // namespace Debond

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/output/matrices.h>
-#include <debond/output/output_files.h>
 #include <debond/output/tables.h>
 #include <debond/solve/displacement.h>
 
@@ -120,6 +120,5 @@ namespace Debond
 
 
 
-  template decltype(output_files<2>) output_files<2>;
-  template decltype(output_files<3>) output_files<3>;
+  DEBOND_INSTANTIATE(output_files);
 } // namespace Debond

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
 
-#include <debond/base/text.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/version.h>
 #include <debond/output/report.h>
-
-#include <cmath>
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
 
 namespace Debond
 {
@@ -304,8 +298,6 @@ namespace Debond
 
 
 
-  template decltype(report_problem<2>) report_problem<2>;
-  template decltype(report_problem<3>) report_problem<3>;
-  template decltype(report_cost<2>)    report_cost<2>;
-  template decltype(report_cost<3>)    report_cost<3>;
+  DEBOND_INSTANTIATE(report_problem);
+  DEBOND_INSTANTIATE(report_cost);
 } // namespace Debond

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/text.h>
+#include <debond/base/instantiate.h>
 #include <debond/output/report.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {
@@ -621,6 +614,5 @@ namespace Debond
 
 
 
-  template decltype(report_result<2>) report_result<2>;
-  template decltype(report_result<3>) report_result<3>;
+  DEBOND_INSTANTIATE(report_result);
 } // namespace Debond

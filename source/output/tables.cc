@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/tables.h>
 
@@ -130,6 +131,5 @@ namespace Debond
 
 
 
-  template decltype(write_contact_profile<2>) write_contact_profile<2>;
-  template decltype(write_contact_profile<3>) write_contact_profile<3>;
+  DEBOND_INSTANTIATE(write_contact_profile);
 } // namespace Debond

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/output/vtu.h>
 #include <debond/output/vtu_grid.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <functional>
-#include <limits>
 
 namespace Debond
 {
@@ -473,8 +469,6 @@ namespace Debond
 
 
 
-  template decltype(write_body_vtu<2>)    write_body_vtu<2>;
-  template decltype(write_body_vtu<3>)    write_body_vtu<3>;
-  template decltype(write_contact_vtu<2>) write_contact_vtu<2>;
-  template decltype(write_contact_vtu<3>) write_contact_vtu<3>;
+  DEBOND_INSTANTIATE(write_body_vtu);
+  DEBOND_INSTANTIATE(write_contact_vtu);
 } // namespace Debond

@@ -2,13 +2,9 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
+#include <debond/base/instantiate.h>
 #include <debond/input/bad_input.h>
 #include <debond/program/check_result.h>
-
-#include <algorithm>
-#include <iomanip>
-#include <limits>
-#include <sstream>
 
 namespace Debond
 {
@@ -338,8 +334,6 @@ namespace Debond
 
 
 
-  template decltype(check_exact_displacement<2>) check_exact_displacement<2>;
-  template decltype(check_exact_displacement<3>) check_exact_displacement<3>;
-  template decltype(check_result<2>)             check_result<2>;
-  template decltype(check_result<3>)             check_result<3>;
+  DEBOND_INSTANTIATE(check_exact_displacement);
+  DEBOND_INSTANTIATE(check_result);
 } // namespace Debond

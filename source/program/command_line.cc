@@ -2,12 +2,8 @@
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/base/blas_threads.h>
-#include <debond/base/interruption.h>
 #include <debond/base/processes.h>
-#include <debond/base/ranks.h>
-#include <debond/base/text.h>
 #include <debond/base/version.h>
-#include <debond/input/parameters.h>
 #include <debond/linear_algebra/elimination_factor.h>
 #include <debond/program/command_line.h>
 #include <debond/program/run.h>
@@ -17,10 +13,7 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <functional>
-#include <iomanip>
 #include <iostream>
-#include <map>
 #include <new>
 
 namespace Debond

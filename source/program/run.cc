@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
 #include <debond/base/processes.h>
 #include <debond/output/report.h>
@@ -386,8 +387,6 @@ namespace Debond
 
 
 
-  template decltype(run<2>)      run<2>;
-  template decltype(run<3>)      run<3>;
-  template decltype(validate<2>) validate<2>;
-  template decltype(validate<3>) validate<3>;
+  DEBOND_INSTANTIATE(run);
+  DEBOND_INSTANTIATE(validate);
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/append.h>
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/program/run_output.h>
 #include <debond/solve/displacement.h>
@@ -184,6 +185,5 @@ namespace Debond
 
 
 
-  template class RunOutput<2>;
-  template class RunOutput<3>;
+  DEBOND_INSTANTIATE_CLASS(RunOutput);
 } // namespace Debond

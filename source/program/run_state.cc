@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/input/parameters.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/program/run_state.h>
@@ -13,11 +14,7 @@
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
-#include <array>
-#include <fstream>
 #include <iterator>
-#include <map>
-#include <sstream>
 
 namespace Debond
 {
@@ -256,10 +253,7 @@ namespace Debond
 
 
 
-  template decltype(mesh_checksum<2>) mesh_checksum<2>;
-  template decltype(mesh_checksum<3>) mesh_checksum<3>;
-  template decltype(write_state<2>)   write_state<2>;
-  template decltype(write_state<3>)   write_state<3>;
-  template decltype(read_state<2>)    read_state<2>;
-  template decltype(read_state<3>)    read_state<3>;
+  DEBOND_INSTANTIATE(mesh_checksum);
+  DEBOND_INSTANTIATE(write_state);
+  DEBOND_INSTANTIATE(read_state);
 } // namespace Debond

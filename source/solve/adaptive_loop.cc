@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/adaptive_loop.h>
-
-#include <algorithm>
-#include <iomanip>
-#include <sstream>
 
 namespace Debond
 {
@@ -546,8 +543,6 @@ namespace Debond
 
 
 
-  template decltype(make_first_scene<2>) make_first_scene<2>;
-  template decltype(make_first_scene<3>) make_first_scene<3>;
-  template decltype(solve_adaptively<2>) solve_adaptively<2>;
-  template decltype(solve_adaptively<3>) solve_adaptively<3>;
+  DEBOND_INSTANTIATE(make_first_scene);
+  DEBOND_INSTANTIATE(solve_adaptively);
 } // namespace Debond

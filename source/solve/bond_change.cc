@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/bond_change.h>
-
-#include <Eigen/Cholesky>
-
-#include <algorithm>
 
 namespace Debond
 {
@@ -261,6 +258,5 @@ namespace Debond
 
 
 
-  template decltype(first_bond_change<2>) first_bond_change<2>;
-  template decltype(first_bond_change<3>) first_bond_change<3>;
+  DEBOND_INSTANTIATE(first_bond_change);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/solve/condensed_scene.h>
 
 namespace Debond
@@ -32,6 +33,5 @@ namespace Debond
 
 
 
-  template struct CondensedScene<2>;
-  template struct CondensedScene<3>;
+  DEBOND_INSTANTIATE_CLASS(CondensedScene);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
@@ -411,6 +412,5 @@ namespace Debond
 
 
 
-  template decltype(make_contact_solver<2>) make_contact_solver<2>;
-  template decltype(make_contact_solver<3>) make_contact_solver<3>;
+  DEBOND_INSTANTIATE(make_contact_solver);
 } // namespace Debond

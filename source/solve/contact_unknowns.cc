@@ -4,7 +4,6 @@
 #include <boost/serialization/utility.hpp>
 
 #include <unordered_map>
-#include <utility>
 
 namespace Debond
 {

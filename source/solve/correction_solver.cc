@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/solve/correction_solver.h>
 
-#include <algorithm>
-#include <limits>
-
 namespace Debond
 {
   CondensedCorrection::CondensedCorrection(

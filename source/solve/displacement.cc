@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/instantiate.h>
 #include <debond/solve/displacement.h>
-
-#include <limits>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -70,12 +68,8 @@ namespace Debond
 
 
 
-  template decltype(in_serial_order<2>)    in_serial_order<2>;
-  template decltype(in_serial_order<3>)    in_serial_order<3>;
-  template decltype(from_serial_order<2>)  from_serial_order<2>;
-  template decltype(from_serial_order<3>)  from_serial_order<3>;
-  template decltype(write_displacement<2>) write_displacement<2>;
-  template decltype(write_displacement<3>) write_displacement<3>;
-  template decltype(read_displacement<2>)  read_displacement<2>;
-  template decltype(read_displacement<3>)  read_displacement<3>;
+  DEBOND_INSTANTIATE(in_serial_order);
+  DEBOND_INSTANTIATE(from_serial_order);
+  DEBOND_INSTANTIATE(write_displacement);
+  DEBOND_INSTANTIATE(read_displacement);
 } // namespace Debond

@@ -7,9 +7,7 @@
 
 #include <boost/serialization/utility.hpp>
 
-#include <algorithm>
 #include <unordered_map>
-#include <utility>
 
 namespace Debond
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/extended_operator.h>
 
-#include <cmath>
 #include <numeric>
 
 namespace Debond
@@ -235,6 +235,5 @@ namespace Debond
 
 
 
-  template class ExtendedOperator<2>;
-  template class ExtendedOperator<3>;
+  DEBOND_INSTANTIATE_CLASS(ExtendedOperator);
 } // namespace Debond

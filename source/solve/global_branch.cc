@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/refinement.h>
-
-#include <cmath>
 
 namespace Debond
 {
@@ -190,6 +189,5 @@ namespace Debond
 
 
 
-  template decltype(global_branch<2>) global_branch<2>;
-  template decltype(global_branch<3>) global_branch<3>;
+  DEBOND_INSTANTIATE(global_branch);
 } // namespace Debond

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/elasticity/contact_condensation.h>
+#include <debond/base/instantiate.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/bond_change.h>
 #include <debond/solve/contact_solver.h>
@@ -10,14 +10,7 @@
 #include <debond/solve/load_path_arc.h>
 #include <debond/solve/refinement.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <limits>
-#include <memory>
 #include <numeric>
-#include <optional>
-#include <sstream>
 
 namespace Debond
 {
@@ -635,6 +628,5 @@ namespace Debond
 
 
 
-  template decltype(follow_load_path<2>) follow_load_path<2>;
-  template decltype(follow_load_path<3>) follow_load_path<3>;
+  DEBOND_INSTANTIATE(follow_load_path);
 } // namespace Debond

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/solve/load_path_arc.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
@@ -183,6 +181,5 @@ namespace Debond
 
 
 
-  template decltype(follow_arc<2>) follow_arc<2>;
-  template decltype(follow_arc<3>) follow_arc<3>;
+  DEBOND_INSTANTIATE(follow_arc);
 } // namespace Debond

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/load_path_state.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
@@ -199,6 +197,5 @@ namespace Debond
   }
 
 
-  template decltype(load_path_state<2>) load_path_state<2>;
-  template decltype(load_path_state<3>) load_path_state<3>;
+  DEBOND_INSTANTIATE(load_path_state);
 } // namespace Debond

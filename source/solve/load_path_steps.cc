@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/solve/load_path_steps.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
@@ -100,12 +98,8 @@ namespace Debond
   }
 
 
-  template decltype(location<2>) location<2>;
-  template decltype(location<3>) location<3>;
-  template decltype(step_of<2>)  step_of<2>;
-  template decltype(step_of<3>)  step_of<3>;
-  template struct VerifiedState<2>;
-  template struct VerifiedState<3>;
-  template decltype(load_path_totals<2>) load_path_totals<2>;
-  template decltype(load_path_totals<3>) load_path_totals<3>;
+  DEBOND_INSTANTIATE(location);
+  DEBOND_INSTANTIATE(step_of);
+  DEBOND_INSTANTIATE_CLASS(VerifiedState);
+  DEBOND_INSTANTIATE(load_path_totals);
 } // namespace Debond

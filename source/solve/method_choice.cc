@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
 #include <debond/input/bad_input.h>
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/cholmod_factor.h>
 #include <debond/solve/method_choice.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <limits>
-#include <sstream>
 
 namespace Debond
 {
@@ -323,8 +318,6 @@ namespace Debond
 
 
 
-  template decltype(choose_linear_solver<2>)  choose_linear_solver<2>;
-  template decltype(choose_linear_solver<3>)  choose_linear_solver<3>;
-  template decltype(factorisation_instead<2>) factorisation_instead<2>;
-  template decltype(factorisation_instead<3>) factorisation_instead<3>;
+  DEBOND_INSTANTIATE(choose_linear_solver);
+  DEBOND_INSTANTIATE(factorisation_instead);
 } // namespace Debond

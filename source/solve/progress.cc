@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/solve/progress.h>
 
-#include <chrono>
 #include <iomanip>
 #include <sstream>
 

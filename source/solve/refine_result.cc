@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/solve/refine_result.h>
 
 namespace Debond
@@ -55,6 +56,5 @@ namespace Debond
 
 
 
-  template decltype(refine_result<2>) refine_result<2>;
-  template decltype(refine_result<3>) refine_result<3>;
+  DEBOND_INSTANTIATE(refine_result);
 } // namespace Debond

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/optimization/majorise/majorant.h>
 #include <debond/solve/extended_operator.h>
 #include <debond/solve/refinement.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <sstream>
 
 namespace Debond
 {
@@ -452,10 +448,7 @@ namespace Debond
 
 
 
-  template decltype(rounding_of_energy<2>)  rounding_of_energy<2>;
-  template decltype(rounding_of_energy<3>)  rounding_of_energy<3>;
-  template decltype(refine_where_needed<2>) refine_where_needed<2>;
-  template decltype(refine_where_needed<3>) refine_where_needed<3>;
-  template decltype(refine<2>)              refine<2>;
-  template decltype(refine<3>)              refine<3>;
+  DEBOND_INSTANTIATE(rounding_of_energy);
+  DEBOND_INSTANTIATE(refine_where_needed);
+  DEBOND_INSTANTIATE(refine);
 } // namespace Debond

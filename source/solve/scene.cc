@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/probe_parameters.h>
@@ -12,9 +13,6 @@
 #include <debond/solve/scene_loads.h>
 
 #include <boost/serialization/set.hpp>
-
-#include <algorithm>
-#include <set>
 
 namespace Debond
 {
@@ -306,6 +304,5 @@ namespace Debond
 
 
 
-  template class Scene<2>;
-  template class Scene<3>;
+  DEBOND_INSTANTIATE_CLASS(Scene);
 } // namespace Debond

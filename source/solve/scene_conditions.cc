@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/function.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/mesh/field_value.h>
 #include <debond/solve/scene_conditions.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 
 namespace Debond
 {
@@ -357,10 +352,7 @@ namespace Debond
 
 
 
-  template decltype(make_supports<2>)       make_supports<2>;
-  template decltype(make_supports<3>)       make_supports<3>;
-  template decltype(make_bond_field<2>)     make_bond_field<2>;
-  template decltype(make_bond_field<3>)     make_bond_field<3>;
-  template decltype(check_held_vertices<2>) check_held_vertices<2>;
-  template decltype(check_held_vertices<3>) check_held_vertices<3>;
+  DEBOND_INSTANTIATE(make_supports);
+  DEBOND_INSTANTIATE(make_bond_field);
+  DEBOND_INSTANTIATE(check_held_vertices);
 } // namespace Debond

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/function.h>
-#include <deal.II/base/mpi.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/scene_loads.h>
 
@@ -75,6 +74,5 @@ namespace Debond
 
 
 
-  template decltype(make_loads<2>) make_loads<2>;
-  template decltype(make_loads<3>) make_loads<3>;
+  DEBOND_INSTANTIATE(make_loads);
 } // namespace Debond

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/instantiate.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/contact_solver.h>
 #include <debond/solve/refine_result.h>
 #include <debond/solve/solve.h>
-
-#include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -280,10 +278,7 @@ namespace Debond
 
 
 
-  template decltype(check_supports_of_method<2>) check_supports_of_method<2>;
-  template decltype(check_supports_of_method<3>) check_supports_of_method<3>;
-  template decltype(solve_contact<2>)            solve_contact<2>;
-  template decltype(solve_contact<3>)            solve_contact<3>;
-  template decltype(solve<2>)                    solve<2>;
-  template decltype(solve<3>)                    solve<3>;
+  DEBOND_INSTANTIATE(check_supports_of_method);
+  DEBOND_INSTANTIATE(solve_contact);
+  DEBOND_INSTANTIATE(solve);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/solve/solve_result.h>
 
 namespace Debond
@@ -54,6 +55,5 @@ namespace Debond
 
 
 
-  template decltype(functional_of<2>) functional_of<2>;
-  template decltype(functional_of<3>) functional_of<3>;
+  DEBOND_INSTANTIATE(functional_of);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
@@ -8,10 +9,6 @@
 #include <debond/solve/method_choice.h>
 #include <debond/solve/which_minimum.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace Debond
@@ -608,8 +605,6 @@ namespace Debond
 
 
 
-  template decltype(kind_without_search<2>) kind_without_search<2>;
-  template decltype(kind_without_search<3>) kind_without_search<3>;
-  template decltype(find_better_minimum<2>) find_better_minimum<2>;
-  template decltype(find_better_minimum<3>) find_better_minimum<3>;
+  DEBOND_INSTANTIATE(kind_without_search);
+  DEBOND_INSTANTIATE(find_better_minimum);
 } // namespace Debond

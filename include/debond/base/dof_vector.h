@@ -2,7 +2,6 @@
 #ifndef debond_base_dof_vector_h
 #define debond_base_dof_vector_h
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/vector.h>
 
 #include <debond/base/ranks.h>

@@ -13,10 +13,8 @@
 #include <memory>
 #include <ostream>
 #include <set>
-#include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace Debond
 {

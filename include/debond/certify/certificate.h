@@ -2,18 +2,9 @@
 #ifndef debond_certify_certificate_h
 #define debond_certify_certificate_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/certify/equilibrium_problem.h>
 #include <debond/certify/global_bound.h>
 #include <debond/input/accuracy_parameters.h>
-#include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/scene.h>
-
-#include <functional>
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

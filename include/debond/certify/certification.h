@@ -3,15 +3,8 @@
 #define debond_certify_certification_h
 
 #include <debond/certify/certificate.h>
-#include <debond/input/accuracy_parameters.h>
 #include <debond/output/output_files.h>
 #include <debond/output/record.h>
-#include <debond/output/run_result.h>
-#include <debond/solve/refinement_goal.h>
-
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace Debond
 {

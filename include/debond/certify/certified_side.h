@@ -7,7 +7,6 @@
 #include <debond/optimization/interval.h>
 
 #include <array>
-#include <limits>
 #include <optional>
 
 namespace Debond

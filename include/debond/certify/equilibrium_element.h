@@ -3,14 +3,11 @@
 #define debond_certify_equilibrium_element_h
 
 #include <deal.II/base/point.h>
-#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
 #include <debond/elasticity/material.h>
 
 #include <Eigen/Core>
-
-#include <array>
 
 namespace Debond
 {

@@ -2,18 +2,9 @@
 #ifndef debond_certify_equilibrium_mesh_h
 #define debond_certify_equilibrium_mesh_h
 
-#include <deal.II/grid/tria.h>
-
-#include <debond/base/entry_error.h>
 #include <debond/certify/equilibrium_element.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/unknowns.h>
-
-#include <Eigen/Core>
-
-#include <array>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

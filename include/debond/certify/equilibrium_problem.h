@@ -2,14 +2,9 @@
 #ifndef debond_certify_equilibrium_problem_h
 #define debond_certify_equilibrium_problem_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/certify/equilibrium_mesh.h>
 #include <debond/elasticity/fields.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/mesh/by_region.h>
-
-#include <memory>
-#include <vector>
 
 namespace Debond
 {

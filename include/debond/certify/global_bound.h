@@ -2,14 +2,8 @@
 #ifndef debond_certify_global_bound_h
 #define debond_certify_global_bound_h
 
-#include <debond/certify/certified_side.h>
-#include <debond/certify/equilibrium_problem.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/branch_and_bound.h>
-
-#include <functional>
-#include <limits>
-#include <vector>
 
 namespace Debond
 {

@@ -5,13 +5,6 @@
 #include <debond/certify/certified_side.h>
 #include <debond/certify/equilibrium_problem.h>
 #include <debond/optimization/global/separable_energy.h>
-#include <debond/optimization/piecewise_energy.h>
-
-#include <Eigen/Core>
-
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace Debond
 {

@@ -2,16 +2,7 @@
 #ifndef debond_certify_side_moments_h
 #define debond_certify_side_moments_h
 
-#include <deal.II/base/point.h>
-#include <deal.II/base/tensor.h>
-#include <deal.II/grid/tria.h>
-
 #include <debond/elasticity/unknowns.h>
-
-#include <array>
-#include <functional>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

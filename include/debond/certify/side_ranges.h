@@ -2,11 +2,7 @@
 #ifndef debond_certify_side_ranges_h
 #define debond_certify_side_ranges_h
 
-#include <debond/certify/certified_side.h>
 #include <debond/certify/mean_problem.h>
-
-#include <functional>
-#include <vector>
 
 namespace Debond
 {

@@ -4,8 +4,6 @@
 
 #include <debond/contact/adhesion_integral.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// The length (in 3D the area) of the faces in whose middle the scene has no

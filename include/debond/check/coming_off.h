@@ -4,9 +4,6 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/rigid_motions.h>
-
-#include <optional>
 
 namespace Debond
 {

@@ -2,9 +2,6 @@
 #ifndef debond_check_displacement_error_h
 #define debond_check_displacement_error_h
 
-#include <deal.II/base/function.h>
-
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
 
 namespace Debond

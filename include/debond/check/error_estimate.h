@@ -2,12 +2,8 @@
 #ifndef debond_check_error_estimate_h
 #define debond_check_error_estimate_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-
-#include <optional>
-#include <vector>
 
 namespace Debond
 {

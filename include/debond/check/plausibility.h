@@ -2,14 +2,7 @@
 #ifndef debond_check_plausibility_h
 #define debond_check_plausibility_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/check/verification.h>
-#include <debond/contact/adhesion_integral.h>
-#include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/body.h>
-
-#include <string>
-#include <vector>
 
 namespace Debond
 {

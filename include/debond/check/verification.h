@@ -2,17 +2,8 @@
 #ifndef debond_check_verification_h
 #define debond_check_verification_h
 
-#include <deal.II/base/tensor.h>
-
-#include <debond/base/dof_vector.h>
-#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

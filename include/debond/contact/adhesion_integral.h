@@ -7,9 +7,6 @@
 #include <debond/contact/law.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <algorithm>
-#include <vector>
-
 namespace Debond
 {
   /// What bonds that do not return remember, for each of ContactPoints::list();

@@ -4,8 +4,6 @@
 
 #include <debond/contact/adhesion_integral.h>
 
-#include <vector>
-
 /// @file
 /// Sums over the points of an AdhesionIntegral that only results, checks and
 /// the search for other minima need.

@@ -2,7 +2,6 @@
 #ifndef debond_contact_boundary_h
 #define debond_contact_boundary_h
 
-#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
@@ -12,7 +11,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <vector>
 
 namespace Debond

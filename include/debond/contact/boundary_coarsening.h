@@ -6,8 +6,6 @@
 
 #include <Eigen/SparseCore>
 
-#include <vector>
-
 namespace Debond
 {
   /**

@@ -5,7 +5,6 @@
 #include <debond/contact/boundary.h>
 
 #include <set>
-#include <vector>
 
 namespace Debond
 {

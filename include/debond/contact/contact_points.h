@@ -7,11 +7,6 @@
 #include <debond/contact/boundary.h>
 #include <debond/contact/quadrature.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 namespace Debond
 {
   /// A displacement across the contact boundary, along the normal and along the

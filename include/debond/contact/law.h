@@ -2,13 +2,10 @@
 #ifndef debond_contact_law_h
 #define debond_contact_law_h
 
-#include <debond/optimization/interval.h>
 #include <debond/optimization/piecewise_energy.h>
 
 #include <functional>
 #include <map>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

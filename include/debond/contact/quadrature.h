@@ -4,7 +4,6 @@
 
 #include <debond/mesh/bernstein.h>
 
-#include <array>
 #include <string>
 #include <vector>
 

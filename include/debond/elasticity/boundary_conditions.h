@@ -5,17 +5,10 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>
 
-#include <debond/base/entry_error.h>
 #include <debond/mesh/body.h>
 #include <debond/mesh/symmetry.h>
 
 #include <algorithm>
-#include <array>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

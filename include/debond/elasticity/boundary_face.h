@@ -2,16 +2,10 @@
 #ifndef debond_elasticity_boundary_face_h
 #define debond_elasticity_boundary_face_h
 
-#include <deal.II/base/point.h>
-#include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/mesh/bernstein.h>
-
-#include <array>
-#include <set>
-#include <vector>
 
 namespace Debond
 {

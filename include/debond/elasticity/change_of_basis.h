@@ -12,7 +12,6 @@
 #include <array>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -4,12 +4,8 @@
 
 #include <deal.II/lac/affine_constraints.h>
 
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
-
-#include <set>
-#include <vector>
 
 namespace Debond
 {

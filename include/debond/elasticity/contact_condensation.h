@@ -2,16 +2,11 @@
 #ifndef debond_elasticity_contact_condensation_h
 #define debond_elasticity_contact_condensation_h
 
-#include <debond/base/interruption.h>
-#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
 
 #include <Eigen/QR>
-
-#include <cmath>
-#include <vector>
 
 namespace Debond
 {

@@ -2,13 +2,8 @@
 #ifndef debond_elasticity_contact_nodes_h
 #define debond_elasticity_contact_nodes_h
 
-#include <debond/elasticity/boundary_conditions.h>
-#include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/constrained_dofs.h>
 #include <debond/elasticity/contact_space.h>
-#include <debond/elasticity/node_supports.h>
-
-#include <vector>
 
 namespace Debond
 {

@@ -2,14 +2,9 @@
 #ifndef debond_elasticity_contact_space_h
 #define debond_elasticity_contact_space_h
 
-#include <deal.II/base/types.h>
-
-#include <debond/base/dof_vector.h>
 #include <debond/base/views.h>
 #include <debond/contact/boundary.h>
 #include <debond/optimization/bundle/direction_problem.h>
-
-#include <vector>
 
 namespace Debond
 {

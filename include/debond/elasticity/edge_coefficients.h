@@ -5,8 +5,6 @@
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/change_of_basis.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// The coefficient of a quadratic function in the Bernstein basis (see

@@ -2,19 +2,11 @@
 #ifndef debond_elasticity_elastic_problem_h
 #define debond_elasticity_elastic_problem_h
 
-#include <deal.II/grid/tria.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/load_vector.h>
-#include <debond/elasticity/material.h>
-#include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/distributed_matrix.h>
-
-#include <memory>
-#include <vector>
 
 namespace Debond
 {

@@ -2,18 +2,10 @@
 #ifndef debond_elasticity_fields_h
 #define debond_elasticity_fields_h
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/base/symmetric_tensor.h>
-#include <deal.II/base/tensor.h>
-
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/simplex_values.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/by_region.h>
-
-#include <cmath>
-#include <vector>
 
 namespace Debond
 {

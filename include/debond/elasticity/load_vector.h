@@ -3,7 +3,6 @@
 #define debond_elasticity_load_vector_h
 
 #include <deal.II/base/function.h>
-#include <deal.II/base/point.h>
 #include <deal.II/base/quadrature.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -14,8 +13,6 @@
 
 #include <map>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

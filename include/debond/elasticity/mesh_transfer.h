@@ -2,10 +2,7 @@
 #ifndef debond_elasticity_mesh_transfer_h
 #define debond_elasticity_mesh_transfer_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
-
-#include <vector>
 
 namespace Debond
 {

@@ -2,13 +2,8 @@
 #ifndef debond_elasticity_node_pairs_h
 #define debond_elasticity_node_pairs_h
 
-#include <deal.II/base/types.h>
-
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/change_of_basis.h>
-
-#include <set>
-#include <vector>
 
 namespace Debond
 {

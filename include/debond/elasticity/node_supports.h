@@ -2,19 +2,7 @@
 #ifndef debond_elasticity_node_supports_h
 #define debond_elasticity_node_supports_h
 
-#include <deal.II/base/point.h>
-#include <deal.II/base/tensor.h>
-
-#include <debond/elasticity/boundary_conditions.h>
-#include <debond/elasticity/boundary_face.h>
-#include <debond/elasticity/change_of_basis.h>
 #include <debond/elasticity/node_pairs.h>
-
-#include <array>
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -2,14 +2,7 @@
 #ifndef debond_elasticity_probes_h
 #define debond_elasticity_probes_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/base/entry_error.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/body.h>
-
-#include <map>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -4,9 +4,6 @@
 
 #include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
-#include <debond/mesh/body.h>
-
-#include <vector>
 
 namespace Debond
 {

@@ -2,7 +2,6 @@
 #ifndef debond_elasticity_rigid_motions_h
 #define debond_elasticity_rigid_motions_h
 
-#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
 #include <debond/mesh/symmetry.h>

@@ -2,16 +2,9 @@
 #ifndef debond_elasticity_temperature_load_h
 #define debond_elasticity_temperature_load_h
 
-#include <deal.II/dofs/dof_handler.h>
-
-#include <debond/base/dof_vector.h>
-#include <debond/base/entry_error.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/mesh/by_region.h>
-
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -2,26 +2,12 @@
 #ifndef debond_elasticity_unknowns_h
 #define debond_elasticity_unknowns_h
 
-#include <deal.II/base/tensor.h>
-#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_fe.h>
-#include <deal.II/grid/tria.h>
-#include <deal.II/lac/affine_constraints.h>
 
-#include <debond/base/dof_vector.h>
-#include <debond/elasticity/boundary_conditions.h>
-#include <debond/elasticity/change_of_basis.h>
 #include <debond/elasticity/constrained_dofs.h>
 #include <debond/elasticity/contact_space.h>
 #include <debond/elasticity/load_factors.h>
-#include <debond/elasticity/node_pairs.h>
-#include <debond/elasticity/node_supports.h>
-#include <debond/elasticity/rigid_motions.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -7,11 +7,6 @@
 #include <debond/input/expression.h>
 #include <debond/mesh/body.h>
 
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   /// A load on a boundary, as an expression.

@@ -2,14 +2,9 @@
 #ifndef debond_input_load_path_parameters_h
 #define debond_input_load_path_parameters_h
 
-#include <debond/base/parameter_table.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/support_parameters.h>
-
-#include <set>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

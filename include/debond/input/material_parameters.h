@@ -5,10 +5,6 @@
 #include <debond/base/parameter_table.h>
 #include <debond/elasticity/material.h>
 
-#include <map>
-#include <set>
-#include <string>
-
 namespace Debond
 {
   /// The material, and what regions have of their own.

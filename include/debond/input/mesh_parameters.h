@@ -6,10 +6,6 @@
 #include <debond/input/expression.h>
 #include <debond/mesh/make_body.h>
 
-#include <map>
-#include <memory>
-#include <string>
-
 namespace Debond
 {
   /// The section Mesh.

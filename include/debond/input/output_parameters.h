@@ -4,8 +4,6 @@
 
 #include <debond/base/parameter_table.h>
 
-#include <string>
-
 namespace Debond
 {
   struct OutputParameters

@@ -2,17 +2,12 @@
 #ifndef debond_input_parameters_h
 #define debond_input_parameters_h
 
-#include <debond/base/parameter_table.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/output_parameters.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/mesh/make_body.h>
-
-#include <map>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -5,11 +5,6 @@
 #include <debond/base/parameter_table.h>
 #include <debond/elasticity/probes.h>
 
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   /// Binds the section Probes: texts by name.

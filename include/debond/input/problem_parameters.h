@@ -5,16 +5,8 @@
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
 #include <debond/elasticity/boundary_conditions.h>
-#include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/material_parameters.h>
-#include <debond/input/support_parameters.h>
-#include <debond/mesh/body.h>
-
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
 
 namespace Debond
 {

@@ -4,13 +4,7 @@
 
 #include <debond/base/parameter_table.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
-#include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
-
-#include <limits>
-#include <map>
-#include <string>
 
 namespace Debond
 {

@@ -6,11 +6,6 @@
 #include <debond/input/expression.h>
 #include <debond/mesh/body.h>
 
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   /// The supports of the body beside clamps. Expressions are with the constants

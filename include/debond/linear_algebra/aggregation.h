@@ -4,8 +4,6 @@
 
 #include <debond/linear_algebra/truncated_multigrid.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// Matrices with so few rows have no coarser levels of aggregates.

@@ -6,7 +6,6 @@
 #include <debond/linear_algebra/matrix_on_ranks.h>
 
 #include <memory>
-#include <vector>
 
 namespace Debond
 {

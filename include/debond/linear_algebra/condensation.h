@@ -2,15 +2,11 @@
 #ifndef debond_linear_algebra_condensation_h
 #define debond_linear_algebra_condensation_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/base/views.h>
 #include <debond/linear_algebra/elimination_factor.h>
 #include <debond/linear_algebra/matrix_on_ranks.h>
 
-#include <functional>
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -5,8 +5,6 @@
 #include <debond/linear_algebra/distributed_vector.h>
 #include <debond/linear_algebra/matrix_on_ranks.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// A MatrixOnRanks as an operator on vectors of which each rank has its own

@@ -7,12 +7,7 @@
 #include <debond/base/dof_vector.h>
 #include <debond/base/views.h>
 
-#include <Eigen/Core>
-
-#include <functional>
-#include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -5,7 +5,6 @@
 #include <debond/linear_algebra/block_rows.h>
 
 #include <functional>
-#include <vector>
 
 namespace Debond
 {

@@ -3,7 +3,6 @@
 #define debond_linear_algebra_matrix_on_ranks_h
 
 #include <deal.II/base/index_set.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/sparse_matrix.h>
 
 #include <debond/base/ranks.h>

@@ -3,10 +3,7 @@
 #define debond_linear_algebra_multigrid_factor_h
 
 #include <debond/linear_algebra/elimination_factor.h>
-#include <debond/linear_algebra/matrix_on_ranks.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
-
-#include <memory>
 
 namespace Debond
 {

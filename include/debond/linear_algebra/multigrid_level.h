@@ -10,8 +10,6 @@
 #include <debond/linear_algebra/shared_nodes.h>
 
 #include <cmath>
-#include <memory>
-#include <vector>
 
 namespace Debond
 {

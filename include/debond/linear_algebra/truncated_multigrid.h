@@ -6,9 +6,6 @@
 #include <debond/linear_algebra/distributed_matrix.h>
 #include <debond/linear_algebra/multigrid_level.h>
 
-#include <memory>
-#include <vector>
-
 namespace Debond
 {
   /// The rows of a prolongation from the next coarser level at own nodes, with

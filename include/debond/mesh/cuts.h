@@ -4,8 +4,6 @@
 
 #include <debond/mesh/body.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// Cuts @p mesh into bodies that have vertices of their own along the cuts;

@@ -6,8 +6,6 @@
 
 #include <debond/mesh/body.h>
 
-#include <memory>
-
 namespace Debond
 {
   /// The mesh of a body on several ranks, each of which has its own cells and

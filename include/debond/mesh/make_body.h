@@ -5,8 +5,6 @@
 #include <debond/mesh/box.h>
 #include <debond/mesh/gmsh_file.h>
 
-#include <memory>
-
 namespace Debond
 {
   /// The entries of a scene on its body.

@@ -4,8 +4,6 @@
 
 #include <debond/mesh/source_mesh.h>
 
-#include <functional>
-
 namespace Debond
 {
   /// The body of a mesh that comes from elsewhere: triangles and tetrahedra are

@@ -5,8 +5,6 @@
 #include <debond/mesh/body.h>
 #include <debond/mesh/gmsh_file.h>
 
-#include <string>
-
 namespace Debond
 {
   /// A mesh as a file or a generator makes it: of triangles (tetrahedra), or of

@@ -8,7 +8,6 @@
 
 #include <Eigen/SparseCore>
 
-
 namespace Debond
 {
   /**

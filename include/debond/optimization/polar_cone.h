@@ -4,8 +4,6 @@
 
 #include <debond/base/views.h>
 
-#include <Eigen/Core>
-
 #include <optional>
 
 namespace Debond

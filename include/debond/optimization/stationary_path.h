@@ -9,9 +9,7 @@
 
 #include <Eigen/LU>
 
-#include <cmath>
 #include <optional>
-#include <vector>
 
 namespace Debond
 {

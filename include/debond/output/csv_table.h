@@ -6,9 +6,7 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 namespace Debond
 {

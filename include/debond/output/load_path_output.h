@@ -2,15 +2,7 @@
 #ifndef debond_output_load_path_output_h
 #define debond_output_load_path_output_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/elasticity/elastic_problem.h>
-#include <debond/input/output_parameters.h>
 #include <debond/output/output_files.h>
-#include <debond/solve/load_path_steps.h>
-
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -3,9 +3,6 @@
 #define debond_output_matrices_h
 
 #include <debond/output/output_files.h>
-#include <debond/solve/scene.h>
-
-#include <vector>
 
 namespace Debond
 {

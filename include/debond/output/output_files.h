@@ -4,11 +4,6 @@
 
 #include <debond/input/output_parameters.h>
 #include <debond/output/run_result.h>
-#include <debond/solve/scene.h>
-
-#include <functional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

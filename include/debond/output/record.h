@@ -8,8 +8,6 @@
 
 #include <optional>
 #include <ostream>
-#include <sstream>
-#include <string>
 
 namespace Debond
 {

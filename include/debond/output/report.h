@@ -4,11 +4,6 @@
 
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
-#include <debond/solve/method_choice.h>
-#include <debond/solve/scene.h>
-
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -4,17 +4,9 @@
 
 #include <debond/check/coming_off.h>
 #include <debond/check/displacement_error.h>
-#include <debond/check/error_estimate.h>
 #include <debond/check/plausibility.h>
 #include <debond/output/vtu.h>
 #include <debond/solve/adaptive_loop.h>
-#include <debond/solve/load_path_steps.h>
-#include <debond/solve/solve.h>
-
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

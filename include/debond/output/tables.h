@@ -7,10 +7,6 @@
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   /**

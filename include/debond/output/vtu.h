@@ -2,14 +2,8 @@
 #ifndef debond_output_vtu_h
 #define debond_output_vtu_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/check/error_estimate.h>
 #include <debond/check/verification.h>
-#include <debond/elasticity/elastic_problem.h>
-
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -2,14 +2,7 @@
 #ifndef debond_program_check_result_h
 #define debond_program_check_result_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/input/accuracy_parameters.h>
 #include <debond/output/run_result.h>
-#include <debond/solve/scene.h>
-
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

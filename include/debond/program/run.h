@@ -5,8 +5,6 @@
 #include <debond/input/parameters.h>
 #include <debond/program/exit_code.h>
 
-#include <ostream>
-
 namespace Debond
 {
   struct RunOptions

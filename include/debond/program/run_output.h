@@ -6,13 +6,7 @@
 #include <debond/certify/certification.h>
 #include <debond/input/parameters.h>
 #include <debond/output/load_path_output.h>
-#include <debond/output/record.h>
 #include <debond/program/run_state.h>
-
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

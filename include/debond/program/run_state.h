@@ -2,12 +2,9 @@
 #ifndef debond_program_run_state_h
 #define debond_program_run_state_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/solve/adaptive_loop.h>
-#include <debond/solve/load_path.h>
 
 #include <cstdint>
-#include <string>
 
 namespace Debond
 {

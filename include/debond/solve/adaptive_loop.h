@@ -2,18 +2,9 @@
 #ifndef debond_solve_adaptive_loop_h
 #define debond_solve_adaptive_loop_h
 
-#include <debond/check/error_estimate.h>
-#include <debond/input/accuracy_parameters.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/mesh_growth.h>
 #include <debond/solve/refinement_goal.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
-
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

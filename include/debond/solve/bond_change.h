@@ -4,8 +4,6 @@
 
 #include <debond/solve/condensed_scene.h>
 
-#include <optional>
-
 namespace Debond
 {
   /// A state that a load path has reached.

@@ -6,8 +6,6 @@
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/scene.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// A scene condensed onto its contact normals, under multiples of its loads.

@@ -2,14 +2,10 @@
 #ifndef debond_solve_contact_solver_h
 #define debond_solve_contact_solver_h
 
-#include <debond/linear_algebra/condensation.h>
 #include <debond/solve/correction_solver.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/progress.h>
 #include <debond/solve/solve_result.h>
-
-#include <memory>
-#include <optional>
 
 namespace Debond
 {

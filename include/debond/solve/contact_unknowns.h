@@ -2,15 +2,11 @@
 #ifndef debond_solve_contact_unknowns_h
 #define debond_solve_contact_unknowns_h
 
-#include <debond/base/views.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/distributed_vector.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <Eigen/SparseCore>
-
-#include <vector>
 
 namespace Debond
 {

@@ -2,16 +2,9 @@
 #ifndef debond_solve_correction_solver_h
 #define debond_solve_correction_solver_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/contact_unknowns.h>
-
-#include <Eigen/SparseCore>
-
-#include <optional>
-#include <vector>
 
 namespace Debond
 {

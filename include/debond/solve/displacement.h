@@ -2,10 +2,7 @@
 #ifndef debond_solve_displacement_h
 #define debond_solve_displacement_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/elasticity/unknowns.h>
-
-#include <string>
 
 namespace Debond
 {

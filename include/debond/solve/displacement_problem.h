@@ -2,7 +2,6 @@
 #ifndef debond_solve_displacement_problem_h
 #define debond_solve_displacement_problem_h
 
-#include <debond/base/interruption.h>
 #include <debond/optimization/majorise/majorant.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>

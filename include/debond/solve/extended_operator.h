@@ -2,13 +2,7 @@
 #ifndef debond_solve_extended_operator_h
 #define debond_solve_extended_operator_h
 
-#include <deal.II/base/tensor.h>
-
 #include <debond/elasticity/elastic_problem.h>
-
-#include <Eigen/Core>
-
-#include <vector>
 
 namespace Debond
 {

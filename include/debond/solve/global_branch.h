@@ -2,15 +2,8 @@
 #ifndef debond_solve_global_branch_h
 #define debond_solve_global_branch_h
 
-#include <debond/base/views.h>
-#include <debond/input/load_path_parameters.h>
-#include <debond/input/solver_parameters.h>
 #include <debond/solve/condensed_scene.h>
 #include <debond/solve/which_minimum.h>
-
-#include <functional>
-#include <map>
-#include <vector>
 
 namespace Debond
 {

@@ -2,17 +2,8 @@
 #ifndef debond_solve_load_path_h
 #define debond_solve_load_path_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/input/load_path_parameters.h>
-#include <debond/input/solver_parameters.h>
 #include <debond/solve/load_path_steps.h>
-#include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
-
-#include <functional>
-#include <memory>
-#include <ostream>
-#include <vector>
 
 namespace Debond
 {

@@ -5,9 +5,6 @@
 #include <debond/solve/condensed_scene.h>
 #include <debond/solve/load_path_steps.h>
 
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   template <int dim>

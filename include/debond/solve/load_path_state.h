@@ -2,13 +2,8 @@
 #ifndef debond_solve_load_path_state_h
 #define debond_solve_load_path_state_h
 
-#include <debond/base/dof_vector.h>
 #include <debond/check/verification.h>
 #include <debond/elasticity/probes.h>
-
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

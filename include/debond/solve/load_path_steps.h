@@ -2,13 +2,8 @@
 #ifndef debond_solve_load_path_steps_h
 #define debond_solve_load_path_steps_h
 
-#include <debond/input/load_path_parameters.h>
 #include <debond/solve/load_path_state.h>
 #include <debond/solve/scene.h>
-
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -3,13 +3,8 @@
 #define debond_solve_method_choice_h
 
 #include <debond/input/accuracy_parameters.h>
-#include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
-#include <debond/optimization/status.h>
 #include <debond/solve/scene.h>
-
-#include <optional>
-#include <string>
 
 namespace Debond
 {

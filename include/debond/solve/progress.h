@@ -2,14 +2,8 @@
 #ifndef debond_solve_progress_h
 #define debond_solve_progress_h
 
-#include <debond/base/interruption.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
-
-#include <functional>
-#include <limits>
-#include <ostream>
-#include <string>
 
 namespace Debond
 {

@@ -3,7 +3,6 @@
 #define debond_solve_refine_result_h
 
 #include <debond/solve/refinement.h>
-#include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
 
 namespace Debond

@@ -2,13 +2,8 @@
 #ifndef debond_solve_refinement_h
 #define debond_solve_refinement_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/elasticity/elastic_problem.h>
-#include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/correction_solver.h>
 #include <debond/solve/scene.h>
-
-#include <string>
 
 namespace Debond
 {

@@ -2,12 +2,7 @@
 #ifndef debond_solve_refinement_goal_h
 #define debond_solve_refinement_goal_h
 
-#include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
-
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

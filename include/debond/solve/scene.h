@@ -2,19 +2,11 @@
 #ifndef debond_solve_scene_h
 #define debond_solve_scene_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
-#include <debond/contact/adhesion_integral.h>
-#include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/probes.h>
 #include <debond/input/problem_parameters.h>
-#include <debond/mesh/body.h>
-#include <debond/mesh/by_region.h>
 #include <debond/optimization/bundle/functional.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
-
-#include <memory>
 
 namespace Debond
 {

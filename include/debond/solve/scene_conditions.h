@@ -2,17 +2,10 @@
 #ifndef debond_solve_scene_conditions_h
 #define debond_solve_scene_conditions_h
 
-#include <debond/base/entry_error.h>
 #include <debond/contact/bond_field.h>
-#include <debond/contact/law.h>
-#include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/mesh/by_region.h>
-
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -2,14 +2,8 @@
 #ifndef debond_solve_scene_loads_h
 #define debond_solve_scene_loads_h
 
-#include <deal.II/grid/tria.h>
-
 #include <debond/elasticity/load_vector.h>
 #include <debond/input/load_parameters.h>
-#include <debond/mesh/body.h>
-
-#include <set>
-#include <string>
 
 namespace Debond
 {

@@ -2,14 +2,9 @@
 #ifndef debond_solve_solve_h
 #define debond_solve_solve_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/input/solver_parameters.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/progress.h>
-#include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
-
-#include <ostream>
 
 namespace Debond
 {

@@ -2,17 +2,8 @@
 #ifndef debond_solve_solve_result_h
 #define debond_solve_solve_result_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/elasticity/load_factors.h>
-#include <debond/optimization/bundle/proximal_bundle.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/which_minimum.h>
-
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -2,14 +2,9 @@
 #ifndef debond_solve_which_minimum_h
 #define debond_solve_which_minimum_h
 
-#include <debond/base/views.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/optimization/global/branch_and_bound.h>
-
-#include <string>
-#include <vector>
 
 namespace Debond
 {

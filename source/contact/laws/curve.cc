@@ -2,16 +2,11 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/parameter_table.h>
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/laws/curve.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <sstream>
 #include <stdexcept>
 
 namespace Debond

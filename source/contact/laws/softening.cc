@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/parameter_table.h>
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/softening.h>
 
-#include <cmath>
 #include <stdexcept>
 
 namespace Debond

@@ -2,16 +2,9 @@
 #include <deal.II/base/function_parser.h>
 
 #include <debond/base/parameter_table.h>
-#include <debond/base/text.h>
 #include <debond/contact/laws/winkler.h>
 
-#include <array>
-#include <cmath>
-#include <memory>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -2,9 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/line_search.h>
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace Debond
 {

@@ -3,11 +3,7 @@
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>
 
-#include <Eigen/Cholesky>
-
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {

@@ -5,12 +5,8 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/line_search.h>
-#include <debond/optimization/bundle/proximal_bundle.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <stdexcept>
 
 namespace Debond
 {

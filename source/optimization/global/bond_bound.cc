@@ -4,10 +4,6 @@
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace Debond
 {
   namespace

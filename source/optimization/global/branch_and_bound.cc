@@ -2,14 +2,8 @@
 #include <debond/base/processes.h>
 #include <debond/optimization/global/bond_bound.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
 #include <future>
 #include <set>
 

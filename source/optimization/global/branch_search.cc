@@ -3,9 +3,6 @@
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <utility>
 
 namespace Debond

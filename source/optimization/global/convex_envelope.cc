@@ -2,10 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/global/convex_envelope.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace Debond
 {

@@ -5,10 +5,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace Debond
 {
   namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/global/moves.h>
 
-#include <algorithm>
 #include <iterator>
 #include <numeric>
 

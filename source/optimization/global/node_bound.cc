@@ -3,9 +3,6 @@
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   namespace

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/global/separable_energy.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   Eigen::VectorXd

@@ -2,9 +2,7 @@
 #include <debond/base/text.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iomanip>
 
 namespace Debond
 {

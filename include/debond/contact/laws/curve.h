@@ -5,7 +5,6 @@
 #include <debond/contact/law.h>
 
 #include <utility>
-#include <vector>
 
 namespace Debond
 {

@@ -4,8 +4,6 @@
 
 #include <debond/linear_algebra/cholesky.h>
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
 

@@ -4,10 +4,7 @@
 
 #include <debond/base/dof_vector.h>
 
-#include <Eigen/Core>
-
 #include <string>
-#include <vector>
 
 namespace Debond
 {

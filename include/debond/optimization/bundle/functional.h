@@ -7,9 +7,6 @@
 #include <debond/base/dof_vector.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <functional>
-#include <vector>
-
 namespace Debond
 {
   /**

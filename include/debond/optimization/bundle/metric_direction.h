@@ -2,8 +2,6 @@
 #ifndef debond_optimization_bundle_metric_direction_h
 #define debond_optimization_bundle_metric_direction_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/base/views.h>
 #include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/piecewise_quadratic.h>

@@ -6,10 +6,6 @@
 #include <debond/optimization/bundle/functional.h>
 #include <debond/optimization/status.h>
 
-#include <functional>
-#include <string>
-#include <vector>
-
 namespace Debond
 {
   enum class StepKind

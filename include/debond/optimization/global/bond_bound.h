@@ -4,8 +4,6 @@
 
 #include <debond/optimization/global/node_bound.h>
 
-#include <optional>
-
 namespace Debond
 {
   /**

@@ -3,11 +3,6 @@
 #define debond_optimization_global_branch_and_bound_h
 
 #include <debond/optimization/global/separable_energy.h>
-#include <debond/optimization/interval.h>
-
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -4,13 +4,9 @@
 
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/moves.h>
-#include <debond/optimization/global/separable_energy.h>
 #include <debond/optimization/majorise/coarse_start.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/optimization/piecewise_quadratic.h>
 
 #include <optional>
-#include <vector>
 
 namespace Debond
 {

@@ -2,11 +2,9 @@
 #ifndef debond_optimization_global_convex_envelope_h
 #define debond_optimization_global_convex_envelope_h
 
-#include <debond/optimization/interval.h>
 #include <debond/optimization/piecewise_energy.h>
 
 #include <optional>
-#include <vector>
 
 namespace Debond
 {

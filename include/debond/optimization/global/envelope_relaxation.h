@@ -3,13 +3,8 @@
 #define debond_optimization_global_envelope_relaxation_h
 
 #include <debond/optimization/global/convex_envelope.h>
-#include <debond/optimization/interval.h>
 
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 namespace Debond
 {

@@ -2,11 +2,9 @@
 #ifndef debond_optimization_global_moves_h
 #define debond_optimization_global_moves_h
 
-#include <debond/base/views.h>
 #include <debond/optimization/global/separable_energy.h>
 
 #include <set>
-#include <vector>
 
 namespace Debond
 {

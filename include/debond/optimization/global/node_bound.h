@@ -6,8 +6,6 @@
 #include <debond/optimization/global/separable_energy.h>
 
 #include <array>
-#include <optional>
-#include <vector>
 
 namespace Debond
 {

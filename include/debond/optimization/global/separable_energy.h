@@ -5,8 +5,6 @@
 #include <debond/optimization/piecewise_energy.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <vector>
-
 namespace Debond
 {
   /// The piece that holds at each unknown.

@@ -5,10 +5,7 @@
 #include <debond/linear_algebra/bordered_cholesky.h>
 #include <debond/optimization/status.h>
 
-#include <Eigen/Core>
-
 #include <limits>
-#include <vector>
 
 namespace Debond
 {

@@ -2,16 +2,9 @@
 #ifndef debond_optimization_majorise_coarse_start_h
 #define debond_optimization_majorise_coarse_start_h
 
-#include <debond/base/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
-
-#include <Eigen/SparseCore>
-
-#include <functional>
-#include <string>
-#include <vector>
 
 namespace Debond
 {

@@ -2,11 +2,8 @@
 #ifndef debond_optimization_majorise_condensed_problem_h
 #define debond_optimization_majorise_condensed_problem_h
 
-#include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorant.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/optimization/piecewise_quadratic.h>
 
 namespace Debond
 {
