@@ -240,7 +240,7 @@ namespace Debond
     catch (const EntryError &)
       {
         // Data without a value at a point that displacements do not need:
-        // certify() will say it.
+        // after() will say it.
       }
   }
 
@@ -328,8 +328,8 @@ namespace Debond
 
   template <int dim>
   void
-  Certification<dim>::certify(const std::shared_ptr<const Scene<dim>> &scene,
-                              RunResult<dim>                          &result)
+  Certification<dim>::after(const std::shared_ptr<const Scene<dim>> &scene,
+                            RunResult<dim>                          &result)
   {
     // With a target the goal has made the certificate of the last mesh already.
     if (kind != CertificateKind::none && result.is_success() && !certificate)

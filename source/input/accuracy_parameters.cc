@@ -5,31 +5,15 @@
 namespace Debond
 {
   void
-  bind_accuracy(CertificateParameters  &certificate,
-                AccuracyParameters     &accuracy,
+  bind_accuracy(AccuracyParameters     &accuracy,
                 VerificationParameters &verification,
                 ParameterTable         &table)
   {
-    table.bind_choice(
-      "Certificate/Kind",
-      certificate.kind,
-      {{"none", CertificateKind::none},
-       {"fixed state", CertificateKind::fixed_state},
-       {"global", CertificateKind::global}},
-      "An interval, with a proof, for the minimum of the continuous problem on the body of the mesh: global is for the least J (2D), fixed state for the least J with the bonds of each side of the contact boundary on the branch of the result");
-    const Pattern width = number("that is 0 or in [1e-7, 1)", [](double x) {
-      return x == 0. || (x >= 1e-7 && x < 1.);
-    });
     table.bind(
       "Accuracy/Target",
       accuracy.target,
-      width,
+      relative_target(),
       "The mesh is refined where that lowers J most, from the one of Mesh on, until the estimated error of J relative to J is not larger than this; 0 for the mesh as it is. Needs another method than euclidean bundle");
-    table.bind(
-      "Certificate/Target",
-      accuracy.certified_width,
-      width,
-      "The mesh is refined where that makes the interval narrower, from the one of Mesh on, until its width relative to J is not larger than this; 0 for the mesh as it is");
     table.bind(
       "Accuracy/Maximum unknowns",
       accuracy.maximum_unknowns,

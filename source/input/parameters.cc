@@ -129,7 +129,8 @@ namespace Debond
 
 
 
-  SceneTable::SceneTable()
+  SceneTable::SceneTable(CompanionEntries *const companion)
+    : companion(companion)
   {
     bind_constants(constants, *this);
     bind("Dimension", p.dimension, whole_number(2, 3), "Space dimension");
@@ -154,7 +155,9 @@ namespace Debond
     bind_supports(p.supports, *this);
     bind_contact(p, *this);
     bind_solver(p.solver, *this);
-    bind_accuracy(p.certificate, p.accuracy, p.verification, *this);
+    bind_accuracy(p.accuracy, p.verification, *this);
+    if (companion != nullptr)
+      companion->bind(*this);
     bind_output(p.output, *this);
   }
 
@@ -312,45 +315,9 @@ namespace Debond
     {
       if (p.symmetry == Symmetry::none)
         return;
-      refuse({{p.dimension != 2, "Dimension", "Symmetry = axis needs 2"},
-              {p.certificate.kind != CertificateKind::none,
-               "Certificate/Kind",
-               "is for bodies without an axis"}},
-             {"Symmetry"},
-             table);
+      if (p.dimension != 2)
+        table.reject("Dimension", "Symmetry = axis needs 2", {"Symmetry"});
       p.materials.everywhere.hypothesis = Material::Hypothesis::plane_strain;
-    }
-
-
-
-    void
-    check_certificate(const Parameters &p, ParameterTable &table)
-    {
-      if (p.certificate.kind == CertificateKind::none)
-        {
-          table.without_effect("Certificate/Target",
-                               "is for a certificate",
-                               "Certificate/Kind");
-          return;
-        }
-      if (p.dimension != 2 && p.certificate.kind == CertificateKind::global)
-        table.reject("Certificate/Kind", "is for plane bodies", {"Dimension"});
-      if (!p.load_path.factors.empty() || !p.load_path.dead_loads.empty())
-        table.reject("Certificate/Kind",
-                     "is for a single load",
-                     {"Load path/Factors", "Load path/Dead loads"});
-      if (!table.get("Mesh/Cuts").empty())
-        table.reject("Certificate/Kind",
-                     "needs one body, Mesh/Cuts makes several");
-      if (!p.supports.normal.empty() || !p.supports.normals.empty())
-        table.reject("Certificate/Kind",
-                     "needs the body's own normals",
-                     {"Boundary conditions/Foundation normal"});
-      if (!p.loads.temperature_change.empty() && p.materials.has_axes())
-        table.reject("Certificate/Kind",
-                     "needs materials that expand alike along all axes, if "
-                     "there is a temperature change",
-                     {"Loads/Temperature change"});
     }
 
 
@@ -421,8 +388,7 @@ namespace Debond
              {has_path && !has_branches,
               "the load path has no global branch",
               "Solver/Search"},
-             {!searches && !p.solver.prove &&
-                p.certificate.kind == CertificateKind::none,
+             {!searches && !p.solver.prove && !p.solver.has_other_proof,
               "nothing is proved",
               "Solver/Proof/"},
              {!is_euclidean, method, "Solver/Euclidean bundle/"},
@@ -476,8 +442,6 @@ namespace Debond
                      {"Contact law/Law"});
       if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
         return;
-      const std::string breaks =
-        "needs bonds whose traction does not fall but at once, these soften";
       const std::string quadratic =
         "needs a law of straight lines, not Law = exponential";
       const bool decays =
@@ -491,10 +455,7 @@ namespace Debond
          {p.load_path.arc && !p.load_path.bonds_heal,
           "Load path/Arc",
           "needs Load path/Bonds heal = true with bonds that soften, as what "
-          "unloads does not come back on the same curve"},
-         {p.certificate.kind != CertificateKind::none,
-          "Certificate/Kind",
-          breaks}},
+          "unloads does not come back on the same curve"}},
         {"Contact law/Law"},
         table);
     }
@@ -555,9 +516,6 @@ namespace Debond
           "Load path/Arc",
           "needs bonds along the normal alone: in shear the path of a "
           "bond has no corners, but is curved"},
-         {p.certificate.kind != CertificateKind::none,
-          "Certificate/Kind",
-          "needs bonds along the normal alone"},
          {p.solver.prove && !breaks_at_once,
           "Solver/Prove",
           "needs Law = winkler where bonds shear"},
@@ -597,9 +555,7 @@ namespace Debond
         table.reject("Solver/Method",
                      "meshes that are refined need automatic, energy bundle or "
                      "majorise minimise",
-                     {"Accuracy/Target",
-                      "Accuracy/Maximum unknowns",
-                      "Certificate/Target"});
+                     {"Accuracy/Target", "Accuracy/Maximum unknowns"});
     }
   } // namespace
 
@@ -635,12 +591,13 @@ namespace Debond
                      p.body->regions(),
                      *this);
       }
-    check_certificate(p, *this);
     check_degree(p, *this);
     check_softening(p, *this);
     check_shear(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
+    if (companion != nullptr)
+      companion->check(p, *this);
     note_entries_without_effect(p, body, idle_constants, *this);
     if (!errors.empty())
       throw BadInput(errors);

@@ -116,28 +116,32 @@ namespace Debond
     /// The options for each scene.
     struct SceneOptions
     {
-      std::vector<std::string> assignments;
-      bool                     validate = false;
-      bool                     restart  = false;
+      const MakeCompanion     &make_companion;
+      std::vector<std::string> assignments = {};
+      bool                     validate    = false;
+      bool                     restart     = false;
     };
 
 
 
     template <int dim>
     ExitCode
-    run_or_validate(const Parameters &parameters, const SceneOptions &options)
+    run_or_validate(const Parameters   &parameters,
+                    const Companion    &companion,
+                    const SceneOptions &options)
     {
       // A launcher of ranks gives them a terminal even if it writes to a file.
       const bool is_on_terminal =
         n_started_ranks() == 1 && isatty(STDOUT_FILENO) == 1;
       if (!options.validate)
         return run<dim>(parameters,
+                        companion,
                         std::cout,
                         {is_on_terminal, options.restart});
 
       // To be valid a scene has to have a mesh, supports, loads and a method
       // that go together, all of which is found out by making it.
-      validate<dim>(parameters);
+      validate<dim>(parameters, companion);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;
     }
@@ -168,7 +172,8 @@ namespace Debond
                   SignalWatch        &watch,
                   Directories        &directories)
     {
-      SceneTable table;
+      const std::unique_ptr<Companion> companion = options.make_companion();
+      SceneTable                       table(companion.get());
       read_table(scene, options.assignments, table);
       watch.begin_run(!table.has_machine_details());
       const Parameters parameters = table.parameters(scene);
@@ -183,8 +188,8 @@ namespace Debond
                         parameters.output.directory + " is that of " +
                         other->second + " as well; set Output/Directory"});
       return parameters.dimension == 2 ?
-               run_or_validate<2>(parameters, options) :
-               run_or_validate<3>(parameters, options);
+               run_or_validate<2>(parameters, *companion, options) :
+               run_or_validate<3>(parameters, *companion, options);
     }
 
 
@@ -280,7 +285,10 @@ namespace Debond
 
 
     ExitCode
-    execute(const int argc, const char *const argv[], SignalWatch &watch)
+    execute(const int            argc,
+            const char *const    argv[],
+            const MakeCompanion &make_companion,
+            SignalWatch         &watch)
     {
       const po::options_description visible = visible_options();
       const po::variables_map       values  = parse(argc, argv, visible);
@@ -300,7 +308,7 @@ namespace Debond
       std::vector<std::string> scenes;
       if (values.count("scene") > 0)
         scenes = values["scene"].as<std::vector<std::string>>();
-      SceneOptions options;
+      SceneOptions options{make_companion};
       if (values.count("set") > 0)
         options.assignments = values["set"].as<std::vector<std::string>>();
       options.validate = values.count("validate") > 0;
@@ -311,7 +319,8 @@ namespace Debond
         {
           if (scenes.size() > 1)
             throw BadInput({"--print-parameters is for one scene"});
-          SceneTable table;
+          const std::unique_ptr<Companion> companion = make_companion();
+          SceneTable                       table(companion.get());
           read_table(scenes.empty() ? "" : scenes[0],
                      options.assignments,
                      table);
@@ -337,7 +346,9 @@ namespace Debond
 
 
   ExitCode
-  execute_command_line(const int argc, const char *const argv[])
+  execute_command_line(const int            argc,
+                       const char *const    argv[],
+                       const MakeCompanion &make_companion)
   {
     // The problem is solved on one core; more threads of deal.II's vector
     // operations would only change rounding.
@@ -350,7 +361,8 @@ namespace Debond
     // that takes nothing.
     if (!is_first_rank())
       std::cout.setstate(std::ios::failbit);
-    const ExitCode code = guard([&]() { return execute(argc, argv, watch); });
+    const ExitCode code =
+      guard([&]() { return execute(argc, argv, make_companion, watch); });
     end_mpi();
     return code;
   }

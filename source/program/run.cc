@@ -98,19 +98,6 @@ namespace Debond
 
 
 
-    /// Throws BadInput if the scene can have no certificate.
-    template <int dim>
-    Certification<dim>
-    certification_of(const Parameters &parameters, const Answer<dim> &begun)
-    {
-      return {parameters.certificate.kind,
-              parameters.accuracy.certified_width,
-              parameters.solver.proof,
-              begun.scene};
-    }
-
-
-
     /// The steps from a scene on its first mesh to its answer.
     template <int dim>
     class Run
@@ -304,32 +291,37 @@ namespace Debond
 
   template <int dim>
   void
-  validate(const Parameters &parameters)
+  validate(const Parameters &parameters, const Companion &companion)
   {
-    certification_of(parameters, begin(parameters, RunState<dim>()));
+    companion.begin(parameters.solver,
+                    begin(parameters, RunState<dim>()).scene);
   }
 
 
 
   template <int dim>
   ExitCode
-  run(const Parameters &parameters, std::ostream &out, const RunOptions options)
+  run(const Parameters &parameters,
+      const Companion  &companion,
+      std::ostream     &out,
+      const RunOptions  options)
   {
     dealii::Timer       total, timer;
     const RunState<dim> earlier =
       options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
     Answer<dim>    answer = begin(parameters, earlier);
     RunResult<dim> result;
-    result.times                     = {{"mesh", answer.scene->mesh_seconds()},
-                                        {"assembly", answer.scene->assembly_seconds()}};
-    Certification<dim> certification = certification_of(parameters, answer);
+    result.times = {{"mesh", answer.scene->mesh_seconds()},
+                    {"assembly", answer.scene->assembly_seconds()}};
+    const std::unique_ptr<RunCompanion<dim>> after =
+      companion.begin(parameters.solver, answer.scene);
 
     std::optional<RunOutput<dim>> output;
     try
       {
         output.emplace(parameters,
                        *answer.scene,
-                       certification,
+                       *after,
                        options.restart ? &earlier : nullptr);
       }
     catch (const std::runtime_error &error)
@@ -349,7 +341,7 @@ namespace Debond
 
     timer.restart();
     answer = Run<dim>{parameters, options, out, *output, record}.solve(
-      std::move(answer), certification.goal());
+      std::move(answer), after->goal());
     result.times.emplace_back("solve", timer.wall_time());
     result.solve  = answer.path.result;
     result.levels = answer.state.meshes.levels;
@@ -363,9 +355,9 @@ namespace Debond
                  answer.path.bonds ? *answer.path.bonds : scene.adhesion(),
                  answer.state.shortfall,
                  result);
-    certification.certify(answer.scene, result);
+    after->after(answer.scene, result);
     report_result(scene, answer.choice, result, record);
-    certification.report(record);
+    after->report(record);
 
     // The summary comes last and names the cost of all that was written before,
     // so that whoever finds it knows the run to be complete.

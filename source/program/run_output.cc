@@ -19,12 +19,12 @@ namespace Debond
 
 
   template <int dim>
-  RunOutput<dim>::RunOutput(const Parameters         &parameters,
-                            const Scene<dim>         &scene,
-                            const Certification<dim> &certification,
-                            const RunState<dim>      *begun)
+  RunOutput<dim>::RunOutput(const Parameters        &parameters,
+                            const Scene<dim>        &scene,
+                            const RunCompanion<dim> &companion,
+                            const RunState<dim>     *begun)
     : output(parameters.output)
-    , certification(certification)
+    , companion(companion)
   {
     on_all_ranks(scene.ranks(), [this]() {
       if (is_first_rank())
@@ -160,7 +160,7 @@ namespace Debond
   {
     std::vector<OutputFile> all = output_files(output, scene, result);
     append(path_output->files(result.path, result.arc), all);
-    append(certification.files(output, scene), all);
+    append(companion.files(output, scene), all);
     return all;
   }
 

@@ -166,7 +166,6 @@ namespace Debond
     may_differ(const std::string &entry)
     {
       for (const std::string beginning : {"Accuracy/",
-                                          "Certificate/",
                                           "Output/",
                                           "Solver/",
                                           "Verification/",

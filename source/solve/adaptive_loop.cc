@@ -46,8 +46,9 @@ namespace Debond
                                   body.n_vertices() :
                                   2. * body.n_vertices() + body.n_cells() - 1.;
       const double n_unknowns = dim * n_nodes;
-      // A goal has a factorisation of its own (the problem for stresses of a
-      // certificate), which may need more unknowns than the displacements do.
+      // A goal has a factorisation of its own (such as the problem for stresses
+      // in equilibrium), which may need more unknowns than the displacements
+      // do.
       const double memory =
         goal != nullptr ?
           memory_of_factorisation(dim,

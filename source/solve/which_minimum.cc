@@ -360,8 +360,8 @@ namespace Debond
       void
       search_coarse_nodes()
       {
-        // The cheapest first: the certificate takes one factorisation, and
-        // where it proves the result there is nothing to search for.
+        // The cheapest first: the bound at the point takes one factorisation,
+        // and where it proves the result there is nothing to search for.
         if (try_bound_at_point())
           return;
         // Coarser spaces have no tangents.

@@ -193,8 +193,7 @@ namespace
             "Solver/Proof/Maximum nodes=5"},
            {"Solver/Method=euclidean bundle",
             "Solver/Linear solver=direct",
-            "Solver/Energy bundle/Bundle size=9"},
-           {"Certificate/Target=0.1"}})
+            "Solver/Energy bundle/Bundle size=9"}})
       {
         for (const std::string &assignment : assignments)
           std::cout << assignment

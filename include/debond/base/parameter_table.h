@@ -74,6 +74,14 @@ namespace Debond
     return number("> 0", [](double x) { return x > 0; });
   }
 
+  /// What may be aimed at, relative to J; 0 for no aim.
+  inline Pattern
+  relative_target()
+  {
+    return number("that is 0 or in [1e-7, 1)",
+                  [](double x) { return x == 0. || (x >= 1e-7 && x < 1.); });
+  }
+
   /// A positive number in units of the user, such that its products with others
   /// can be computed.
   Pattern

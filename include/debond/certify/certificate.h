@@ -3,11 +3,20 @@
 #define debond_certify_certificate_h
 
 #include <debond/certify/global_bound.h>
-#include <debond/input/accuracy_parameters.h>
 #include <debond/solve/scene.h>
 
 namespace Debond
 {
+  /// The minimum that is to be certified.
+  enum class CertificateKind
+  {
+    none,
+    fixed_state,
+    global
+  };
+
+
+
   /// The minimum that an interval is for.
   enum class CertifiedMinimum
   {

@@ -3,8 +3,7 @@
 #define debond_certify_certification_h
 
 #include <debond/certify/certificate.h>
-#include <debond/output/output_files.h>
-#include <debond/output/record.h>
+#include <debond/program/companion.h>
 
 namespace Debond
 {
@@ -12,7 +11,7 @@ namespace Debond
   /// and what is said and written of it; nothing of all this for a scene
   /// without one.
   template <int dim>
-  class Certification : public RefinementGoal<dim>
+  class Certification : public RefinementGoal<dim>, public RunCompanion<dim>
   {
   public:
     /// Takes the scene on its first mesh. @p target: width relative to J, 0 for
@@ -25,7 +24,7 @@ namespace Debond
 
     /// Returns null if no width is asked for.
     RefinementGoal<dim> *
-    goal()
+    goal() override
     {
       return target > 0. ? this : nullptr;
     }
@@ -43,15 +42,16 @@ namespace Debond
     /// Makes that of a success on the last mesh, unless it has one as a goal. A
     /// note of @p result says why there is none.
     void
-    certify(const std::shared_ptr<const Scene<dim>> &scene,
-            RunResult<dim>                          &result);
+    after(const std::shared_ptr<const Scene<dim>> &scene,
+          RunResult<dim>                          &result) override;
 
     void
-    report(Record &record) const;
+    report(Record &record) const override;
 
     /// Returns a table of the sides. Keeps references.
     std::vector<OutputFile>
-    files(const OutputParameters &output, const Scene<dim> &scene) const;
+    files(const OutputParameters &output,
+          const Scene<dim>       &scene) const override;
 
   private:
     /// Makes the certificate of a result, to which the latest global one adds

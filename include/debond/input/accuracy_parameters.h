@@ -15,8 +15,8 @@ namespace Debond
     /// Estimated error relative to J; 0 for any.
     double target = 0.;
 
-    /// Width of the interval of a certificate relative to J; 0 for any.
-    double certified_width = 0.;
+    /// Says whether a RefinementGoal is to be reached as well.
+    bool has_goal = false;
 
     /// Unknowns of the finest mesh; 0 for as many as the memory has room for.
     unsigned int maximum_unknowns = 0;
@@ -25,23 +25,8 @@ namespace Debond
     bool
     is_adaptive() const
     {
-      return target > 0. || certified_width > 0. || maximum_unknowns > 0;
+      return target > 0. || has_goal || maximum_unknowns > 0;
     }
-  };
-
-
-
-  /// The minimum that is to be certified.
-  enum class CertificateKind
-  {
-    none,
-    fixed_state,
-    global
-  };
-
-  struct CertificateParameters
-  {
-    CertificateKind kind = CertificateKind::none;
   };
 
 
@@ -58,10 +43,9 @@ namespace Debond
 
 
 
-  /// Binds the sections Certificate, Accuracy and Verification.
+  /// Binds the sections Accuracy and Verification.
   void
-  bind_accuracy(CertificateParameters  &certificate,
-                AccuracyParameters     &accuracy,
+  bind_accuracy(AccuracyParameters     &accuracy,
                 VerificationParameters &verification,
                 ParameterTable         &table);
 } // namespace Debond

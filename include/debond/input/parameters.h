@@ -17,7 +17,6 @@ namespace Debond
     SolverParameters       solver;
     AccuracyParameters     accuracy;
     VerificationParameters verification;
-    CertificateParameters  certificate;
     OutputParameters       output;
 
     /// The scene with all entries that it leaves to their defaults.
@@ -29,6 +28,23 @@ namespace Debond
 
 
 
+  /// Entries of what comes after a run, which the scene itself does not need.
+  class CompanionEntries
+  {
+  public:
+    virtual ~CompanionEntries() = default;
+
+    virtual void
+    bind(ParameterTable &table) = 0;
+
+    /// Refuses what does not go together with the scene, and tells the scene
+    /// what it has to know of it.
+    virtual void
+    check(Parameters &parameters, ParameterTable &table) const = 0;
+  };
+
+
+
   /**
    * The table of all entries of a scene, with the paper's benchmark on the mesh
    * 40x4 as defaults.
@@ -36,7 +52,8 @@ namespace Debond
   class SceneTable : public ParameterTable
   {
   public:
-    SceneTable();
+    /// Keeps a pointer to the entries of a companion.
+    explicit SceneTable(CompanionEntries *companion = nullptr);
 
     /// Gives the variables the values that have been read, with those of
     /// constants. Throws BadInput if a constant has none; other errors are
@@ -58,6 +75,7 @@ namespace Debond
     }
 
   private:
+    CompanionEntries                  *companion;
     Parameters                         p;
     BodyParameters                     body;
     std::map<std::string, std::string> constants, parts; ///< texts by name

@@ -67,6 +67,9 @@ namespace Debond
 
     bool                     prove = false;
     BranchAndBoundParameters proof = proof_defaults();
+
+    /// Says whether something else is proved with these limits.
+    bool has_other_proof = false;
   };
 
 

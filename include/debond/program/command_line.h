@@ -2,13 +2,17 @@
 #ifndef debond_program_command_line_h
 #define debond_program_command_line_h
 
+#include <debond/program/companion.h>
 #include <debond/program/exit_code.h>
 
 namespace Debond
 {
-  /// Does what the command line asks for. Errors are reported on std::cerr.
+  /// Does what the command line asks for, with a companion for each scene.
+  /// Errors are reported on std::cerr.
   ExitCode
-  execute_command_line(const int argc, const char *const argv[]);
+  execute_command_line(const int            argc,
+                       const char *const    argv[],
+                       const MakeCompanion &make_companion);
 } // namespace Debond
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef debond_program_run_h
 #define debond_program_run_h
 
-#include <debond/input/parameters.h>
+#include <debond/program/companion.h>
 #include <debond/program/exit_code.h>
 
 namespace Debond
@@ -29,13 +29,14 @@ namespace Debond
   template <int dim>
   ExitCode
   run(const Parameters &parameters,
+      const Companion  &companion,
       std::ostream     &out,
       const RunOptions  options);
 
   /// Throws what run() throws before it writes anything.
   template <int dim>
   void
-  validate(const Parameters &parameters);
+  validate(const Parameters &parameters, const Companion &companion);
 } // namespace Debond
 
 #endif

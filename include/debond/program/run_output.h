@@ -3,9 +3,9 @@
 #define debond_program_run_output_h
 
 #include <debond/base/directory_lock.h>
-#include <debond/certify/certification.h>
 #include <debond/input/parameters.h>
 #include <debond/output/load_path_output.h>
+#include <debond/program/companion.h>
 #include <debond/program/run_state.h>
 
 namespace Debond
@@ -26,10 +26,10 @@ namespace Debond
     /// Locks the directory, removes what an earlier run left and writes the
     /// effective scene. What a run needs that goes on after @p begun stays.
     /// Throws std::runtime_error if it cannot. Keeps references.
-    RunOutput(const Parameters         &parameters,
-              const Scene<dim>         &scene,
-              const Certification<dim> &certification,
-              const RunState<dim>      *begun);
+    RunOutput(const Parameters        &parameters,
+              const Scene<dim>        &scene,
+              const RunCompanion<dim> &companion,
+              const RunState<dim>     *begun);
 
     /// The next steps of the load path are on this mesh, after those that are
     /// done there.
@@ -86,7 +86,7 @@ namespace Debond
     attempt(const Action &action);
 
     const OutputParameters            &output;
-    const Certification<dim>          &certification;
+    const RunCompanion<dim>           &companion;
     std::unique_ptr<DirectoryLock>     lock; ///< of the first rank
     std::optional<LoadPathOutput<dim>> path_output;
     std::vector<std::string>           written;
