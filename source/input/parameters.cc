@@ -329,17 +329,15 @@ namespace Debond
                                 const std::set<std::string> &idle_constants,
                                 ParameterTable              &table)
     {
-      const BondSearchChoice search = p.solver.search;
-      const std::string      method = "Solver/Method is " + p.solver.method;
-      const bool is_euclidean       = p.solver.method == "euclidean bundle";
-      const bool is_energy          = p.solver.method == "energy bundle";
-      const bool has_path           = !p.load_path.factors.empty();
-      const bool has_branches       = has_path && p.load_path.bonds_heal &&
+      const std::string method =
+        "Solver/Method is " + to_string(p.solver.method);
+      const bool is_euclidean =
+        p.solver.method == SolverMethod::euclidean_bundle;
+      const bool is_energy    = p.solver.method == SolverMethod::energy_bundle;
+      const bool has_path     = !p.load_path.factors.empty();
+      const bool has_branches = has_path && p.load_path.bonds_heal &&
                                 p.load_path.global_branch != GlobalBranch::none;
-      const bool    searches = has_path ? has_branches :
-                               search == BondSearchChoice::automatic ?
-                                          p.solver.method == "automatic" :
-                                          search != BondSearchChoice::none;
+      const bool    searches = has_path ? has_branches : p.solver.searches();
       const bool    is_cold  = !p.materials.expands();
       std::ifstream file(
         boost::ends_with(body.file, ".geo") ? table.get("Mesh/File") : "");
@@ -551,7 +549,8 @@ namespace Debond
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {
-      if (p.accuracy.is_adaptive() && p.solver.method == "euclidean bundle")
+      if (p.accuracy.is_adaptive() &&
+          p.solver.method == SolverMethod::euclidean_bundle)
         table.reject("Solver/Method",
                      "meshes that are refined need automatic, energy bundle or "
                      "majorise minimise",

@@ -178,25 +178,57 @@ namespace Debond
               static_cast<unsigned int>(std::stoul(text));
         });
     }
+    /// Values with their names.
+    template <typename T>
+    std::vector<std::pair<std::string, T>>
+    choices(const std::initializer_list<T> values)
+    {
+      std::vector<std::pair<std::string, T>> result;
+      for (const T value : values)
+        result.emplace_back(to_string(value), value);
+      return result;
+    }
   } // namespace
+
+
+
+  std::string
+  to_string(const SolverMethod method)
+  {
+    static const std::array<const char *, 4> names = {
+      {"automatic", "euclidean bundle", "energy bundle", "majorise minimise"}};
+    return names[static_cast<std::size_t>(method)];
+  }
+
+
+
+  std::string
+  to_string(const LinearSolver solver)
+  {
+    static const std::array<const char *, 4> names = {
+      {"none", "automatic", "direct", "multigrid"}};
+    return names[static_cast<std::size_t>(solver)];
+  }
 
 
 
   void
   bind_solver(SolverParameters &solver, ParameterTable &table)
   {
-    table.bind(
+    table.bind_choice(
       "Solver/Method",
       solver.method,
-      one_of({"automatic",
-              "euclidean bundle",
-              "energy bundle",
-              "majorise minimise"}),
+      choices({SolverMethod::automatic,
+               SolverMethod::euclidean_bundle,
+               SolverMethod::energy_bundle,
+               SolverMethod::majorise_minimise}),
       "The minimiser: euclidean bundle is the paper's proximal bundle method; energy bundle is the same method on the normal displacements of the contact nodes alone, in the energy norm; majorise minimise fixes the branch of the law at each quadrature point in turn and is exact after finitely many steps; automatic chooses and says why");
-    table.bind(
+    table.bind_choice(
       "Solver/Linear solver",
       solver.linear_solver,
-      one_of({"automatic", "direct", "multigrid"}),
+      choices({LinearSolver::automatic,
+               LinearSolver::direct,
+               LinearSolver::multigrid}),
       "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; what needs the contact normals alone (energy bundle, Search = full, Prove, an arc, bodies that only bonds hold) takes a solution for each of them then; automatic chooses by size and memory. euclidean bundle needs none");
     table.declare(
       "Solver/Memory limit",

@@ -169,8 +169,8 @@ namespace Debond
        {"degrees_of_freedom", n_dofs},
        {"degrees_of_freedom_paper", n_dofs_paper},
        {"contact_nodes", n_nodes},
-       {"method", choice.method},
-       {"linear_solver", choice.linear_solver}});
+       {"method", to_string(choice.method)},
+       {"linear_solver", to_string(choice.linear_solver)}});
     if (record.has_details())
       record.line("scene", problem.scene);
     const dealii::BoundingBox<dim> box(scene.problem()
@@ -202,9 +202,9 @@ namespace Debond
                   join(motions, ", "),
                   ", by bonds and the foundation alone");
     record.line("method",
-                choice.method,
+                to_string(choice.method),
                 choice.linear_solver != LinearSolver::none ?
-                  ", " + choice.linear_solver + " linear solver" :
+                  ", " + to_string(choice.linear_solver) + " linear solver" :
                   "",
                 choice.method == SolverMethod::euclidean_bundle ?
                   words(", u_k = ", bundle_weight) :

@@ -201,7 +201,7 @@ namespace Debond
 
     void
     report_iterations(const SolveResult &result,
-                      const std::string &method,
+                      const SolverMethod method,
                       Record            &record)
     {
       // A load path has many histories, which are added up.

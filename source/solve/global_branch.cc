@@ -2,7 +2,6 @@
 #include <debond/base/instantiate.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>
-#include <debond/solve/method_choice.h>
 #include <debond/solve/refinement.h>
 
 namespace Debond

@@ -65,7 +65,7 @@ namespace Debond
     bool
     needs_condensed(const Scene<dim>       &scene,
                     const SolverParameters &solver,
-                    const std::string      &method)
+                    const SolverMethod      method)
     {
       const LoadPathParameters &path = scene.parameters().load_path;
       return method == SolverMethod::energy_bundle || solver.prove ||
@@ -97,7 +97,8 @@ namespace Debond
         throw BadInput({problem.scene + ": Load path/" + entry + ' ' + reason});
       };
       if (choice.method == SolverMethod::euclidean_bundle)
-        refuse("Factors", "needs another Solver/Method than " + choice.method);
+        refuse("Factors",
+               "needs another Solver/Method than " + to_string(choice.method));
       if (proves)
         refuse("Factors",
                "follows minima that need not be global: in place of "
@@ -179,9 +180,9 @@ namespace Debond
       check_load_path(problem, solver.prove, choice);
     if ((searches || solver.prove) &&
         choice.linear_solver == LinearSolver::none)
-      throw BadInput({problem.scene + ": Solver/" +
-                      (searches ? "Search" : "Prove") +
-                      " needs another method than " + choice.method});
+      throw BadInput(
+        {problem.scene + ": Solver/" + (searches ? "Search" : "Prove") +
+         " needs another method than " + to_string(choice.method)});
     if (solver.prove &&
         problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
       throw BadInput({problem.scene +
@@ -277,10 +278,10 @@ namespace Debond
     if (bytes > left)
       throw BadInput(
         {problem.scene + ": about " + rounded(n) + " unknowns need about " +
-         in_gib(bytes) + " more of memory with " + choice.method +
+         in_gib(bytes) + " more of memory with " + to_string(choice.method) +
          (choice.linear_solver == LinearSolver::none ?
             "" :
-            " and the linear solver " + choice.linear_solver) +
+            " and the linear solver " + to_string(choice.linear_solver)) +
          ", there are " + in_gib(left) + "; try fewer Mesh/Cells" +
          (choice.linear_solver == LinearSolver::direct && has_cycle ?
             ", Solver/Linear solver = multigrid," :

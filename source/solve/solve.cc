@@ -198,7 +198,7 @@ namespace Debond
       search_and_prove(
         parameters, scene, progress.interruption, *solver, result);
     else if (condensed == nullptr && choice.has_levels && start == nullptr &&
-             wants_search(parameters) && scene.law().pieces().size() > 1)
+             parameters.searches() && scene.law().pieces().size() > 1)
       result.notes.push_back(
         "fronts of bonds are as the search on coarser meshes left them; with "
         "Solver/Linear solver = direct it is done on the finest one");

@@ -4,9 +4,9 @@
 #include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/solve/method_choice.h>
 #include <debond/solve/which_minimum.h>
 
 #include <numeric>
@@ -480,16 +480,6 @@ namespace Debond
 
 
 
-  bool
-  wants_search(const SolverParameters &parameters)
-  {
-    return parameters.search == BondSearchChoice::automatic ?
-             parameters.method == SolverMethod::automatic :
-             parameters.search != BondSearchChoice::none;
-  }
-
-
-
   template <int dim>
   MinimumKind
   kind_without_search(const AdhesionIntegral<dim> &adhesion,
@@ -546,7 +536,7 @@ namespace Debond
   {
     WhichMinimum result;
     result.kind         = kind_without_search(adhesion, s, &condensed);
-    const bool searches = wants_search(parameters);
+    const bool searches = parameters.searches();
     // A J without adhesion is convex, and its minimum is the only one.
     if (result.kind == MinimumKind::global || !(searches || parameters.prove))
       return result;

@@ -8,6 +8,32 @@
 
 namespace Debond
 {
+  enum class SolverMethod
+  {
+    automatic,
+    euclidean_bundle, ///< of the paper
+    energy_bundle,
+    majorise_minimise
+  };
+
+  /// The solver of a method's linear systems.
+  enum class LinearSolver
+  {
+    none, ///< the method needs products with A only
+    automatic,
+    direct,
+    multigrid
+  };
+
+  /// As scenes name it.
+  std::string
+  to_string(const SolverMethod method);
+
+  std::string
+  to_string(const LinearSolver solver);
+
+
+
   /// The effort with which a better minimum is searched for.
   enum class BondSearchChoice
   {
@@ -45,9 +71,9 @@ namespace Debond
 
   struct SolverParameters
   {
-    std::string method        = "automatic";
-    std::string linear_solver = "automatic";
-    double      memory_limit  = 0.; ///< bytes, 0: what is there
+    SolverMethod method        = SolverMethod::automatic;
+    LinearSolver linear_solver = LinearSolver::automatic;
+    double       memory_limit  = 0.; ///< bytes, 0: what is there
 
     ProximalBundleParameters bundle;
 
@@ -70,6 +96,16 @@ namespace Debond
 
     /// Says whether something else is proved with these limits.
     bool has_other_proof = false;
+
+    /// Returns whether a search for lower minima is asked for, by a method that
+    /// ends at one of them.
+    bool
+    searches() const
+    {
+      return search == BondSearchChoice::automatic ?
+               method == SolverMethod::automatic :
+               search != BondSearchChoice::none;
+    }
   };
 
 

@@ -8,34 +8,12 @@
 
 namespace Debond
 {
-  /// The methods that a scene may name.
-  namespace SolverMethod
-  {
-    constexpr const char *automatic         = "automatic";
-    constexpr const char *euclidean_bundle  = "euclidean bundle";
-    constexpr const char *energy_bundle     = "energy bundle";
-    constexpr const char *majorise_minimise = "majorise minimise";
-  } // namespace SolverMethod
-
-  /// The solvers of a method's linear systems.
-  namespace LinearSolver
-  {
-    constexpr const char *automatic = "automatic";
-    constexpr const char *direct    = "direct";
-    constexpr const char *multigrid = "multigrid";
-
-    /// The method needs products with A only.
-    constexpr const char *none = "none";
-  } // namespace LinearSolver
-
-
-
   /// The method that solves a scene, and why it was chosen.
   struct MethodChoice
   {
-    std::string method;
-    std::string linear_solver;
-    std::string reason; ///< empty if the scene leaves no choice
+    SolverMethod method;
+    LinearSolver linear_solver;
+    std::string  reason; ///< empty if the scene leaves no choice
 
     /// Estimate of the program's peak, in bytes.
     double memory = 0.;

@@ -54,11 +54,6 @@ namespace Debond
 
 
 
-  /// Returns whether a search for lower minima is asked for, by a method that
-  /// ends at one of them.
-  bool
-  wants_search(const SolverParameters &parameters);
-
   /// stationary, local minimum, or global if there is no adhesion and J is
   /// convex. Where bonds soften, a minimum is known by S and g of @p condensed.
   template <int dim>
