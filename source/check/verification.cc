@@ -686,6 +686,77 @@ namespace Debond
             u(dim * pair.first + d) = u(dim * pair.second + d);
       return at_contact_nodes<dim>(u, unknowns.contact().normal_dofs());
     }
+
+
+
+    /// Adds the contact nodes, before the law is checked.
+    template <int dim>
+    void
+    add_nodes(const AdhesionIntegral<dim>               &adhesion,
+              const Eigen::VectorXd                     &s,
+              const Eigen::VectorXd                     &forces,
+              const std::vector<dealii::Tensor<1, dim>> &slips,
+              Verification<dim>                         &result)
+    {
+      const std::vector<Interval> allowed = adhesion.force_intervals(s, 0.);
+      const std::vector<double>   shear_damages = shear_damage(adhesion, s);
+      result.penetration                        = 0.;
+      result.largest_opening                    = 0.;
+      for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
+        {
+          result.largest_opening = std::max(result.largest_opening, -s(i));
+          result.penetration     = std::max(result.penetration, s(i));
+          result.nodes.push_back(
+            node_state(i, adhesion, s(i), slips[i], forces(i), allowed[i]));
+          for (const auto &tangent :
+               adhesion.contact_boundary().nodes[i].tangents)
+            if (!tangent.is_held)
+              result.nodes[i].shear_damage = shear_damages[tangent.index];
+        }
+    }
+
+
+
+    /// Returns s with zeros for what is open by rounding, of which @p scales
+    /// get the size: that of forces is @p least at least.
+    template <int dim>
+    Eigen::VectorXd
+    closed_by_rounding(const ContactSpace<dim> &contact,
+                       const DofVector         &diagonal,
+                       const ForceScales       &found,
+                       const double             least,
+                       const Eigen::VectorXd   &s,
+                       std::vector<LawScale>   &scales)
+    {
+      Eigen::VectorXd rounded = s;
+      const auto     &normals = contact.normal_dofs();
+      for (unsigned int i = 0; i < normals.size(); ++i)
+        {
+          scales[i].rounding =
+            std::max(least, found.rounding(normals[i])) / diagonal(normals[i]);
+          if (std::abs(s(i)) <= scales[i].rounding)
+            rounded(i) = 0.;
+        }
+      return rounded;
+    }
+
+
+
+    /// The largest displacement of a bond now or, if it broke for good, before:
+    /// where all of these are closed again, s is rounding.
+    template <int dim>
+    double
+    largest_displacement(const AdhesionIntegral<dim> &adhesion,
+                         const Eigen::VectorXd       &s)
+    {
+      const unsigned int n_nodes = adhesion.n_nodes();
+      double largest = s.head(n_nodes).template lpNorm<Eigen::Infinity>();
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        largest = std::max(largest,
+                           -adhesion.reached(i) *
+                             adhesion.points().bonds_at(i).stretch);
+      return largest;
+    }
   } // namespace
 
 
@@ -711,30 +782,16 @@ namespace Debond
     const ContactBoundary<dim> &boundary = contact.boundary();
     const DofVector residual = problem.fields().residual(u, factors);
 
-    const Eigen::VectorXd       s       = contact.trace(u);
-    const Eigen::VectorXd       forces  = -contact.trace(residual);
-    const std::vector<Interval> allowed = adhesion.force_intervals(s, 0.);
-    const DofVector displacement        = problem.unknowns().lifted(u, factors);
+    const Eigen::VectorXd s            = contact.trace(u);
+    const Eigen::VectorXd forces       = -contact.trace(residual);
+    const DofVector       displacement = problem.unknowns().lifted(u, factors);
     const std::vector<dealii::Tensor<1, dim>> slips =
       slips_of(problem.unknowns(), displacement);
-    const std::vector<double> shear_damages = shear_damage(adhesion, s);
 
     Verification<dim> result;
-    result.state_names         = state_names(adhesion.adhesive_law());
-    result.penetration         = 0.;
-    result.largest_opening     = 0.;
-    result.without_bonds       = zone_without_bonds(boundary, adhesion);
-    const unsigned int n_nodes = adhesion.n_nodes();
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      {
-        result.largest_opening = std::max(result.largest_opening, -s(i));
-        result.penetration     = std::max(result.penetration, s(i));
-        result.nodes.push_back(
-          node_state(i, adhesion, s(i), slips[i], forces(i), allowed[i]));
-        for (const auto &tangent : boundary.nodes[i].tangents)
-          if (!tangent.is_held)
-            result.nodes[i].shear_damage = shear_damages[tangent.index];
-      }
+    result.state_names   = state_names(adhesion.adhesive_law());
+    result.without_bonds = zone_without_bonds(boundary, adhesion);
+    add_nodes(adhesion, s, forces, slips, result);
 
     const ForceScales found =
       force_scales(problem, u, residual, factors, least_force);
@@ -748,28 +805,14 @@ namespace Debond
     const std::vector<double> distances =
       violations(adhesion, s, forces, scales);
 
-    // What is open by rounding is closed.
-    const DofVector diagonal = problem.diagonal();
-    Eigen::VectorXd rounded  = s;
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      {
-        const auto dof = contact.normal_dofs()[i];
-        scales[i].rounding =
-          std::max(tolerance * least_force, found.rounding(dof)) /
-          diagonal(dof);
-        if (std::abs(s(i)) <= scales[i].rounding)
-          rounded(i) = 0.;
-      }
+    const Eigen::VectorXd rounded = closed_by_rounding(
+      contact, problem.diagonal(), found, tolerance * least_force, s, scales);
     result.broken_zone =
       broken_zone(boundary, adhesion.adhesive_law(), adhesion, rounded);
 
     const std::vector<Jump<dim>> tractions = node_tractions(adhesion, s);
-    // Where all bonds that broke for good are closed again, s is rounding.
-    double largest_s = s.head(n_nodes).template lpNorm<Eigen::Infinity>();
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      largest_s =
-        std::max(largest_s,
-                 -adhesion.reached(i) * adhesion.points().bonds_at(i).stretch);
+    const unsigned int           n_nodes   = adhesion.n_nodes();
+    const double                 largest_s = largest_displacement(adhesion, s);
     result.law_violation =
       distances.empty() ? 0. :
                           *std::max_element(distances.begin(), distances.end());

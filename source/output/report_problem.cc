@@ -41,6 +41,33 @@ namespace Debond
 
 
 
+    /// The numbers of a material as the log has them.
+    std::string
+    text_of(const Material &material)
+    {
+      using Three      = std::array<double, 3>;
+      const auto three = [](const Three &of) {
+        return words(of[0], ", ", of[1], ", ", of[2]);
+      };
+      const Orthotropy own     = material.orthotropy.value_or(Orthotropy());
+      const Three     &alpha   = material.thermal_expansions;
+      const bool       is_even = alpha[0] == alpha[1] && alpha[0] == alpha[2];
+      return words(
+        material.orthotropy ?
+          "E = " + three(own.young_moduli) + ", nu = " +
+            three(own.poisson_ratios) + ", G = " + three(own.shear_moduli) :
+          words(
+            "E = ", material.young_modulus, ", nu = ", material.poisson_ratio),
+        alpha == Three() ? "" :
+        is_even          ? words(", alpha = ", alpha[0]) :
+                           ", alpha = " + three(alpha),
+        material.axis_angle == 0. ?
+          "" :
+          words(", axis 1 at ", material.axis_angle, " degrees"));
+    }
+
+
+
     void
     report_data(const ProblemParameters &problem,
                 const unsigned int       n_contact_nodes,
@@ -48,29 +75,6 @@ namespace Debond
     {
       const auto list = [](const std::set<std::string> &names) {
         return join({names.begin(), names.end()}, ", ");
-      };
-      const auto numbers = [](const Material &material) {
-        using Three      = std::array<double, 3>;
-        const auto three = [](const Three &of) {
-          return words(of[0], ", ", of[1], ", ", of[2]);
-        };
-        const Orthotropy own     = material.orthotropy.value_or(Orthotropy());
-        const Three     &alpha   = material.thermal_expansions;
-        const bool       is_even = alpha[0] == alpha[1] && alpha[0] == alpha[2];
-        return words(material.orthotropy ?
-                       "E = " + three(own.young_moduli) +
-                         ", nu = " + three(own.poisson_ratios) +
-                         ", G = " + three(own.shear_moduli) :
-                       words("E = ",
-                             material.young_modulus,
-                             ", nu = ",
-                             material.poisson_ratio),
-                     alpha == Three() ? "" :
-                     is_even          ? words(", alpha = ", alpha[0]) :
-                                        ", alpha = " + three(alpha),
-                     material.axis_angle == 0. ?
-                       "" :
-                       words(", axis 1 at ", material.axis_angle, " degrees"));
       };
       const auto line = [&record](const std::string &label,
                                   const std::string &text) {
@@ -85,7 +89,7 @@ namespace Debond
         };
       const Material &material = problem.materials.everywhere;
       record.line("material",
-                  numbers(material),
+                  text_of(material),
                   problem.dimension == 3 ? "" :
                   problem.symmetry == Symmetry::axis ?
                                            ", around the axis x = 0" :
@@ -93,7 +97,7 @@ namespace Debond
                                            ", plane stress" :
                                            ", plane strain");
       for (const auto &[region, own] : problem.materials.of_regions())
-        record.line("material " + region, numbers(own));
+        record.line("material " + region, text_of(own));
       record.line("clamped", list(problem.clamped_boundaries));
       line("roller", list(problem.supports.rollers));
       lines("displacement", problem.supports.displacements);

@@ -202,6 +202,74 @@ namespace Debond
             error.what());
         }
     }
+
+
+
+    /// Looks for a rigid motion that shows that a body comes off. Returns what
+    /// is wrong if there is none.
+    template <int dim>
+    std::string
+    check_coming_off(const Scene<dim> &scene, RunResult<dim> &result)
+    {
+      if (result.solve.status != SolverStatus::comes_off)
+        return "";
+      // The solver's word alone does not count: a rigid motion away from the
+      // foundation along which the loads do work is the proof that J has no
+      // minimum.
+      result.coming_off =
+        coming_off(scene.problem(),
+                   scene.adhesion(),
+                   result.solve.comes_off_at.value_or(1.).loads);
+      return result.coming_off ?
+               "" :
+               "the solver says that the body comes off, but no rigid motion "
+               "away from the foundation is found along which the loads do more "
+               "work than rounding. Hold the body by a support, or change the "
+               "loads.";
+    }
+
+
+
+    /// What is odd in a scene that has been solved.
+    template <int dim>
+    void
+    add_notes(const Scene<dim>            &scene,
+              const AdhesionIntegral<dim> &bonds,
+              const bool                   is_loaded,
+              RunResult<dim>              &result)
+    {
+      if (!is_loaded)
+        result.notes.push_back("the scene has no load");
+      else if (scene.problem()
+                   .fields()
+                   .applied_nodal_forces(result.solve.load_factor)
+                   .linfty_norm() > 0. &&
+               scene.problem().load(result.solve.load_factor).linfty_norm() ==
+                 0.)
+        result.notes.push_back(
+          "all loads act where the body cannot move: on supports, or along a "
+          "contact boundary with Contact law/Tangential displacement = fixed");
+      if (!scene.parameters().law.pieces.empty())
+        append(bond_notes(
+                 scene.problem().unknowns().dof_handler().get_triangulation(),
+                 result.verification.nodes),
+               result.notes);
+      append(sliding_notes(bonds,
+                           result.verification,
+                           !scene.body().cuts.empty(),
+                           scene.supports().normals.empty() &&
+                             is_curved(scene.contact_boundary())),
+             result.notes);
+      double cell_size_at_edge = 0.;
+      for (const LoadPathStep<dim> &step : result.path)
+        cell_size_at_edge =
+          std::max(cell_size_at_edge, step.state.cell_size_at_edge);
+      append(plausibility_notes(result.largest,
+                                faces_in_softening_zone(scene.problem(),
+                                                        scene.adhesion()),
+                                cell_size_at_edge),
+             result.notes);
+    }
   } // namespace
 
 
@@ -219,26 +287,11 @@ namespace Debond
     append(result.solve.minimum.notes, result.notes);
     append(notes, result.notes);
     append(scene.notes(), result.notes);
-    std::string not_off;
-    if (result.solve.status == SolverStatus::comes_off)
+    const std::string not_off = check_coming_off(scene, result);
+    if (result.solve.status == SolverStatus::comes_off && result.path.empty())
       {
-        // The solver's word alone does not count: a rigid motion away from the
-        // foundation along which the loads do work is the proof that J has no
-        // minimum.
-        result.coming_off =
-          coming_off(scene.problem(),
-                     scene.adhesion(),
-                     result.solve.comes_off_at.value_or(1.).loads);
-        if (!result.coming_off)
-          not_off =
-            "the solver says that the body comes off, but no rigid motion away "
-            "from the foundation is found along which the loads do more work "
-            "than rounding. Hold the body by a support, or change the loads.";
-        if (result.path.empty())
-          {
-            judge(not_off, "", result);
-            return;
-          }
+        judge(not_off, "", result);
+        return;
       }
 
     if (result.solve.status == SolverStatus::quadratic_program &&
@@ -286,36 +339,7 @@ namespace Debond
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    if (!is_loaded)
-      result.notes.push_back("the scene has no load");
-    else if (scene.problem()
-                 .fields()
-                 .applied_nodal_forces(result.solve.load_factor)
-                 .linfty_norm() > 0. &&
-             scene.problem().load(result.solve.load_factor).linfty_norm() == 0.)
-      result.notes.push_back(
-        "all loads act where the body cannot move: on supports, or along a "
-        "contact boundary with Contact law/Tangential displacement = fixed");
-    if (!scene.parameters().law.pieces.empty())
-      append(
-        bond_notes(scene.problem().unknowns().dof_handler().get_triangulation(),
-                   result.verification.nodes),
-        result.notes);
-    append(sliding_notes(bonds,
-                         result.verification,
-                         !scene.body().cuts.empty(),
-                         scene.supports().normals.empty() &&
-                           is_curved(scene.contact_boundary())),
-           result.notes);
-    double cell_size_at_edge = 0.;
-    for (const LoadPathStep<dim> &step : result.path)
-      cell_size_at_edge =
-        std::max(cell_size_at_edge, step.state.cell_size_at_edge);
-    append(plausibility_notes(result.largest,
-                              faces_in_softening_zone(scene.problem(),
-                                                      scene.adhesion()),
-                              cell_size_at_edge),
-           result.notes);
+    add_notes(scene, bonds, is_loaded, result);
     result.displacement_error =
       error_of(verification.exact_displacement, scene, result.solve.u);
   }

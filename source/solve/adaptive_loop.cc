@@ -289,34 +289,39 @@ namespace Debond
           look_at_goal(false);
         ended = !is_usable || !result.shortfall.empty();
         if (!ended)
-          {
-            const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
-            // What a search has lowered J by on this mesh is no gain of
-            // refinement, and is left out of the measured factor.
-            const double search_gain =
-              result.path.result.functional_from_start.value_or(functional) -
-              functional;
-            // What later meshes are compared with, and what log and summary say
-            // of this one. add() sets its error_factor.
-            AdaptiveLevel level = {scene->n_cells(),
-                                   unknowns.n_free_dofs(),
-                                   static_cast<unsigned int>(
-                                     scene->contact_boundary().nodes.size()),
-                                   result.path.result.iterations,
-                                   estimated_step,
-                                   functional,
-                                   estimate.relative(),
-                                   estimate.scale,
-                                   search_gain,
-                                   {},
-                                   goal_here.width,
-                                   seconds + timer.wall_time()};
-            growth.add(level);
-            observer.level_is_done(
-              static_cast<unsigned int>(progress.levels.size()), level);
-            progress.levels.push_back(level);
-          }
+          add_level();
         return true;
+      }
+
+      /// Lists the mesh, for later ones that are compared with it.
+      void
+      add_level()
+      {
+        const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
+        // What a search has lowered J by on this mesh is no gain of
+        // refinement, and is left out of the measured factor.
+        const double search_gain =
+          result.path.result.functional_from_start.value_or(functional) -
+          functional;
+        // What later meshes are compared with, and what log and summary say
+        // of this one. add() sets its error_factor.
+        AdaptiveLevel level = {scene->n_cells(),
+                               unknowns.n_free_dofs(),
+                               static_cast<unsigned int>(
+                                 scene->contact_boundary().nodes.size()),
+                               result.path.result.iterations,
+                               estimated_step,
+                               functional,
+                               estimate.relative(),
+                               estimate.scale,
+                               search_gain,
+                               {},
+                               goal_here.width,
+                               seconds + timer.wall_time()};
+        growth.add(level);
+        observer.level_is_done(
+          static_cast<unsigned int>(progress.levels.size()), level);
+        progress.levels.push_back(level);
       }
 
       /// The states that the load path leads to, with the estimate of the one

@@ -86,6 +86,80 @@ namespace Debond
               problem.fields().material(cell).template plane_modulus<3>());
       return dealii::Utilities::MPI::max(largest, unknowns.communicator());
     }
+
+
+
+    /// The parts of the contact boundary in each state of bonds, with the mean
+    /// gap and the sum of the normal forces.
+    template <int dim>
+    void
+    add_parts(const AdhesionIntegral<dim> &adhesion,
+              const Verification<dim>     &verification,
+              const std::vector<typename ContactBoundary<dim>::Node> &nodes,
+              LoadPathState<dim>                                     &state)
+    {
+      double measure = 0.;
+      // Columns have to be the same at all steps, so that states that the law
+      // can have are listed even if no node is in them.
+      constexpr int n_known = static_cast<int>(BondState::held) + 1;
+      state.other_parts.emplace_back(verification.name(BondState::free), 0.);
+      for (std::size_t k = n_known + 1; k < verification.state_names.size();
+           ++k)
+        state.other_parts.emplace_back(as_title(verification.state_names[k]),
+                                       0.);
+      const auto part = [&](const BondState branch) -> double & {
+        switch (branch)
+          {
+            case BondState::contact:
+              return state.contact_part;
+            case BondState::bonded:
+              return state.bonded_part;
+            case BondState::broken:
+              return state.broken_part;
+            case BondState::free:
+              return adhesion.adhesive_law().is_loose(0) ?
+                       state.broken_part :
+                       state.other_parts[0].second;
+            default:
+              return state.other_parts[static_cast<int>(branch) - n_known + 1]
+                .second;
+          }
+      };
+
+      const bool breaks_separately =
+        std::any_of(adhesion.points().list().begin(),
+                    adhesion.points().list().end(),
+                    [](const auto &point) { return point.n_entries == 0; });
+      if (breaks_separately)
+        state.other_parts.emplace_back("broken_in_shear", 0.);
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          if (breaks_separately && verification.nodes[i].shear_damage == 1.)
+            state.other_parts.back().second += nodes[i].measure;
+          // Each node counts with the measure of the boundary that its bonds
+          // stand for.
+          const ContactNodeState &node = verification.nodes[i];
+          measure += nodes[i].measure;
+          // What is closed and slides is as broken as what is open.
+          const bool is_closed =
+            node.state == BondState::contact ||
+            (node.state == BondState::broken_but_closed && !node.mode_mixity);
+          part(is_closed ? BondState::contact : node.branch) +=
+            nodes[i].measure;
+          state.mean_gap -= nodes[i].measure * node.s;
+          state.normal_force += node.normal_force;
+        }
+      if (measure > 0.)
+        {
+          for (double *number : {&state.contact_part,
+                                 &state.bonded_part,
+                                 &state.broken_part,
+                                 &state.mean_gap})
+            *number /= measure;
+          for (auto &[name, other] : state.other_parts)
+            other /= measure;
+        }
+    }
   } // namespace
 
 
@@ -101,55 +175,8 @@ namespace Debond
     const auto           &nodes = problem.unknowns().contact().boundary().nodes;
     const Eigen::VectorXd s     = problem.unknowns().contact().trace(u);
     LoadPathState<dim>    state = {};
-    double                measure = 0.;
 
-    // Columns have to be the same at all steps, so that states that the law can
-    // have are listed even if no node is in them.
-    constexpr int n_known = static_cast<int>(BondState::held) + 1;
-    state.other_parts.emplace_back(verification.name(BondState::free), 0.);
-    for (std::size_t k = n_known + 1; k < verification.state_names.size(); ++k)
-      state.other_parts.emplace_back(as_title(verification.state_names[k]), 0.);
-    const auto part = [&](const BondState branch) -> double & {
-      switch (branch)
-        {
-          case BondState::contact:
-            return state.contact_part;
-          case BondState::bonded:
-            return state.bonded_part;
-          case BondState::broken:
-            return state.broken_part;
-          case BondState::free:
-            return adhesion.adhesive_law().is_loose(0) ?
-                     state.broken_part :
-                     state.other_parts[0].second;
-          default:
-            return state.other_parts[static_cast<int>(branch) - n_known + 1]
-              .second;
-        }
-    };
-
-    const bool breaks_separately =
-      std::any_of(adhesion.points().list().begin(),
-                  adhesion.points().list().end(),
-                  [](const auto &point) { return point.n_entries == 0; });
-    if (breaks_separately)
-      state.other_parts.emplace_back("broken_in_shear", 0.);
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      {
-        if (breaks_separately && verification.nodes[i].shear_damage == 1.)
-          state.other_parts.back().second += nodes[i].measure;
-        // Each node counts with the measure of the boundary that its bonds
-        // stand for.
-        const ContactNodeState &node = verification.nodes[i];
-        measure += nodes[i].measure;
-        // What is closed and slides is as broken as what is open.
-        const bool is_closed =
-          node.state == BondState::contact ||
-          (node.state == BondState::broken_but_closed && !node.mode_mixity);
-        part(is_closed ? BondState::contact : node.branch) += nodes[i].measure;
-        state.mean_gap -= nodes[i].measure * node.s;
-        state.normal_force += node.normal_force;
-      }
+    add_parts(adhesion, verification, nodes, state);
     // With degree 2 a coefficient of an edge is no displacement, and the
     // largest gap is that of the quadratic.
     const auto &boundary = problem.unknowns().contact().boundary();
@@ -160,17 +187,6 @@ namespace Debond
         state.largest_gap = std::max(
           state.largest_gap,
           -range_on_simplex<dim>(adhesion.points().trace_on(face, s), 2).first);
-    if (measure > 0.)
-      {
-        for (double *number : {&state.contact_part,
-                               &state.bonded_part,
-                               &state.broken_part,
-                               &state.mean_gap})
-          *number /= measure;
-        for (auto &[name, other] : state.other_parts)
-          other /= measure;
-      }
-
     // Energies are integrals of strains and no products with A, whose rows
     // nearly cancel.
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
