@@ -38,28 +38,18 @@ namespace Debond
     /// Returns whether infinitely many quadratics touch Phi, as where bonds
     /// soften: then Phi's own second derivative is less than theirs.
     virtual bool
-    softens() const
-    {
-      return false;
-    }
+    softens() const = 0;
 
-    /// The second derivative of Phi. Those that soften have their own, and
-    /// their own first_change(), which others are not asked for.
+    /// The second derivative of Phi, which is the curvature unless it softens.
     virtual Eigen::SparseMatrix<double>
-    second_derivative(const VectorView &s) const
-    {
-      return curvature(s);
-    }
+    second_derivative(const VectorView &s) const = 0;
 
     /// How far on the way from s to s + @p limit ds the points of Phi come
     /// before some leave their piece, as a multiple of ds: at most @p limit.
     virtual double
-    first_change(const VectorView & /*s*/,
-                 const VectorView & /*ds*/,
-                 const double /*limit*/) const
-    {
-      return 0.;
-    }
+    first_change(const VectorView &s,
+                 const VectorView &ds,
+                 const double      limit) const = 0;
   };
 
 
