@@ -131,6 +131,7 @@ namespace Debond
       const unsigned int n       = static_cast<unsigned int>(r.size());
       BoundQPResult      result  = {};
       bool               refined = false; ///< in extended precision
+      Eigen::VectorXd    force   = {};    ///< r - M x of the last point
 
       BoundQPResult
       run()
@@ -165,7 +166,7 @@ namespace Debond
                              operations_per_entry * double(n) * double(n);
         // The multipliers of active bounds, mu = r - M x >= 0 at the minimum;
         // on free components the same is rounding.
-        result.mu = force_at(x);
+        result.mu = force = force_at(x);
         for (const unsigned int i : free)
           result.mu(i) = 0.;
         return x;
@@ -218,12 +219,12 @@ namespace Debond
         // Free components need no force, those at their bounds one that
         // presses. Few move by the projection.
         const Eigen::VectorXd projected = result.x.cwiseMin(b);
-        Eigen::VectorXd       force     = result.mu;
+        Eigen::VectorXd       left      = force;
         for (unsigned int i = 0; i < n; ++i)
           if (projected(i) < result.x(i))
-            force += M.col(i) * (result.x(i) - projected(i));
+            left += M.col(i) * (result.x(i) - projected(i));
         return (projected.array() < b.array())
-                 .select(force.cwiseAbs(), -force)
+                 .select(left.cwiseAbs(), -left)
                  .maxCoeff() <= tolerance * r.lpNorm<Eigen::Infinity>();
       }
 
@@ -266,12 +267,12 @@ namespace Debond
         refined           = false;
         while (is_within_limits())
           {
-            const Eigen::VectorXd     force    = force_at(x);
+            const Eigen::VectorXd     pull     = force_at(x);
             const double              mu_noise = force_noise(x);
             std::vector<unsigned int> free;
             for (unsigned int i = 0; i < n; ++i)
               {
-                active[i] = x(i) >= b(i) && force(i) >= -mu_noise;
+                active[i] = x(i) >= b(i) && pull(i) >= -mu_noise;
                 if (active[i] == 0)
                   free.push_back(i);
               }
@@ -284,7 +285,7 @@ namespace Debond
                 end(SolverStatus::success);
                 return;
               }
-            if (!step(result.x - x, force, x))
+            if (!step(result.x - x, pull, x))
               {
                 if (std::exchange(refined, true) == false)
                   continue;
