@@ -3,9 +3,9 @@
 #ifndef debond_tests_solved_h
 #define debond_tests_solved_h
 
-#include <debond/solve/method_choice.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
+#include <debond/solve/minimum/method_choice.h>
+#include <debond/solve/minimum/solve.h>
+#include <debond/solve/scene/scene.h>
 
 #include "parameters_of.h"
 

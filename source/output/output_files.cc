@@ -3,7 +3,7 @@
 #include <debond/base/processes.h>
 #include <debond/output/matrices.h>
 #include <debond/output/tables.h>
-#include <debond/solve/displacement.h>
+#include <debond/solve/minimum/displacement.h>
 
 #include <filesystem>
 

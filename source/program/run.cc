@@ -8,7 +8,7 @@
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
 #include <debond/program/run_output.h>
-#include <debond/solve/displacement.h>
+#include <debond/solve/minimum/displacement.h>
 
 #include <filesystem>
 

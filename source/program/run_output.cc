@@ -4,7 +4,7 @@
 #include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/program/run_output.h>
-#include <debond/solve/displacement.h>
+#include <debond/solve/minimum/displacement.h>
 
 #include <filesystem>
 

@@ -6,8 +6,8 @@
 // Their J is not below the bound either.
 
 #include <debond/certify/certificate.h>
-#include <debond/solve/method_choice.h>
-#include <debond/solve/solve.h>
+#include <debond/solve/minimum/method_choice.h>
+#include <debond/solve/minimum/solve.h>
 
 #include <cmath>
 #include <map>

@@ -11,7 +11,7 @@
 
 #include <debond/check/displacement_error.h>
 #include <debond/mesh/crossed_mesh.h>
-#include <debond/solve/extended_operator.h>
+#include <debond/solve/minimum/extended_operator.h>
 
 #include <cmath>
 #include <functional>

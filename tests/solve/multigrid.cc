@@ -13,7 +13,7 @@
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/solve/displacement_problem.h>
+#include <debond/solve/minimum/displacement_problem.h>
 
 #include <cmath>
 #include <iostream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Iterations as they come, in a log and on a terminal.
 
-#include <debond/solve/progress.h>
+#include <debond/solve/minimum/progress.h>
 
 #include <algorithm>
 #include <iostream>

@@ -6,8 +6,8 @@
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/bad_input.h>
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/solve/global_branch.h>
-#include <debond/solve/which_minimum.h>
+#include <debond/solve/minimum/which_minimum.h>
+#include <debond/solve/path/global_branch.h>
 
 #include <algorithm>
 #include <iostream>

@@ -3,7 +3,7 @@
 #define debond_certify_certificate_h
 
 #include <debond/certify/global_bound.h>
-#include <debond/solve/scene.h>
+#include <debond/solve/scene/scene.h>
 
 namespace Debond
 {

@@ -6,7 +6,7 @@
 #include <debond/check/displacement_error.h>
 #include <debond/check/plausibility.h>
 #include <debond/output/vtu.h>
-#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/meshes/adaptive_loop.h>
 
 namespace Debond
 {

@@ -5,7 +5,7 @@
 #include <debond/input/parameters.h>
 #include <debond/output/output_files.h>
 #include <debond/output/record.h>
-#include <debond/solve/refinement_goal.h>
+#include <debond/solve/meshes/refinement_goal.h>
 
 namespace Debond
 {

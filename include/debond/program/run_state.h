@@ -2,7 +2,7 @@
 #ifndef debond_program_run_state_h
 #define debond_program_run_state_h
 
-#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/meshes/adaptive_loop.h>
 
 #include <cstdint>
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_minimum_which_minimum_h
+#define debond_solve_minimum_which_minimum_h
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/input/solver_parameters.h>
+#include <debond/linear_algebra/condensation.h>
+
+namespace Debond
+{
+  /// The kind of a result among the stationary points of J.
+  enum class MinimumKind
+  {
+    stationary,    ///< it satisfies the contact law
+    local_minimum, ///< and no bond is on the kink, so that J rises around it
+    best_known,    ///< and no state that the search tried has a lower J
+    global         ///< and no point is lower, but for the gap
+  };
+
+  std::string
+  to_string(const MinimumKind kind);
+
+
+
+  struct WhichMinimum
+  {
+    MinimumKind kind = MinimumKind::stationary;
+
+    unsigned int search_trials       = 0;
+    unsigned int search_improvements = 0;
+    unsigned int search_failures     = 0; ///< trials without a result
+    unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
+
+    double operations = 0.; ///< of the search (BoundQPResult::operations)
+
+    bool interrupted = false; ///< search or proof, by a signal
+
+    bool         proof_attempted = false;
+    ProofStatus  proof_status    = ProofStatus::no_bound;
+    double       lower_bound     = 0.; ///< of J
+    double       relative_gap    = 0.; ///< J - lower bound, by energy_of_bonds
+    double       energy_of_bonds = 0.; ///< what they can change in J
+    unsigned int proof_nodes     = 0;
+
+    /// J of the result as the condensed problem has it, if there is a proof.
+    double functional = 0.;
+
+    /// With J in place of the condensed functional; of Solver/Prove only.
+    std::vector<ProofProgress> proof_history;
+
+    /// Sentences about work that its limits have left undone.
+    std::vector<std::string> notes;
+  };
+
+
+
+  /// stationary, local minimum, or global if there is no adhesion and J is
+  /// convex. Where bonds soften, a minimum is known by S and g of @p condensed.
+  template <int dim>
+  MinimumKind
+  kind_without_search(const AdhesionIntegral<dim> &adhesion,
+                      const VectorView            &s,
+                      const Condensation          *condensed = nullptr);
+
+  /// The search and the proof that are asked for, from the stationary point
+  /// @p s, which moves if they find a better one.
+  template <int dim>
+  WhichMinimum
+  find_better_minimum(const SolverParameters      &parameters,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const Interruption          &interruption,
+                      Eigen::VectorXd             &s);
+
+  /// Moves the bounds, which are those of the condensed problem in double
+  /// precision, to where they hold for J as it is: @p functional for the
+  /// result, with rounding_of_energy() @p energy_rounding. Where J is below the
+  /// bound all the same there is no proof.
+  void
+  round_outwards(const double  functional,
+                 const double  energy_rounding,
+                 WhichMinimum &minimum);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/instantiate.h>
+#include <debond/solve/minimum/refine_result.h>
+
+namespace Debond
+{
+  template <int dim>
+  bool
+  refine_result(const Scene<dim>   &scene,
+                CorrectionSolver   &solver,
+                const Interruption &interruption,
+                SolveResult        &result)
+  {
+    // On very slender bodies rounding in double precision keeps a solver from
+    // its end. Where it has stopped is near enough to the minimum for extended
+    // precision to go on from there.
+    const bool has_failed = result.status == SolverStatus::quadratic_program ||
+                            result.status == SolverStatus::no_descent;
+    if (!can_be_verified(result.status) && !has_failed)
+      return false;
+    const dealii::Timer   timer;
+    const Eigen::VectorXd before =
+      scene.problem().unknowns().contact().trace(result.u);
+    // This replaces u only if the refinement converges.
+    const Refined refined = refine_where_needed(
+      scene, scene.adhesion(), 1., solver, interruption, result.u);
+    result.is_refined       = refined.is_refined;
+    const std::string &note = refined.note;
+    if (!note.empty())
+      result.notes.push_back(note);
+    if (has_failed && refined.is_refined)
+      {
+        result.status = SolverStatus::success;
+        result.message.clear();
+        result.notes.push_back(
+          "rounding in double precision kept the linear solver from its "
+          "tolerance; the result is that of the refinement in extended "
+          "precision from where it ended.");
+      }
+    // If bonds have changed their pieces by the refinement, the word that the
+    // search has given is about another state.
+    const Eigen::VectorXd after =
+      scene.problem().unknowns().contact().trace(result.u);
+    const auto curvature = [&](const Eigen::VectorXd &s) {
+      return scene.adhesion().second_derivative(s);
+    };
+    if (after.size() > 0 &&
+        (has_failed || (curvature(after) - curvature(before)).norm() >
+                         Tolerance::same_curvature * curvature(after).norm()))
+      result.minimum.kind = kind_without_search(scene.adhesion(), after);
+    result.parts["refinement"] = timer.wall_time();
+    return !note.empty();
+  }
+
+
+
+  DEBOND_INSTANTIATE(refine_result);
+} // namespace Debond

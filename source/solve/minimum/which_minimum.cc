@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
+#include <debond/base/memory.h>
+#include <debond/contact/adhesion_sums.h>
+#include <debond/contact/boundary_coarsening.h>
+#include <debond/contact/boundary_graph.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/minimum/which_minimum.h>
+
+#include <numeric>
+
+namespace Debond
+{
+  namespace
+  {
+    /// On contact boundaries with more nodes a search takes more than a fifth
+    /// of the solve, so that it has to be asked for: automatic searches on a
+    /// coarser one.
+    constexpr unsigned int largest_automatic_search = 200;
+
+    /// The nodes of the coarsest space on which active sets of starts are
+    /// guessed.
+    constexpr unsigned int guess_nodes = 50;
+
+
+
+    /// The stretches of the bonds at the nodes, or on coarser spaces their
+    /// means; empty if all are the same.
+    template <int dim>
+    std::vector<double>
+    stretches(
+      const AdhesionIntegral<dim>                    &adhesion,
+      const std::vector<Eigen::SparseMatrix<double>> &prolongations = {})
+    {
+      if (!adhesion.points().has_field())
+        return {};
+      Eigen::VectorXd mean(adhesion.n_nodes());
+      for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
+        mean(i) = adhesion.points().bonds_at(i).stretch;
+      // A coarse bond stands for the fine ones below it; its stretch is their
+      // mean, weighted by the entries of P, which are not negative.
+      for (const Eigen::SparseMatrix<double> &P : prolongations)
+        mean = (P.transpose() * mean)
+                 .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
+                 .eval();
+      return {mean.data(), mean.data() + mean.size()};
+    }
+
+
+
+    /// The energy with a law of its own for each node, and where bonds shear
+    /// for the unknowns of each: what Phi is with bonds at nodes. Bonds of
+    /// shear alone follow those of the nodes, and are added to @p graph.
+    template <int dim>
+    SeparableEnergy
+    lumped_bonds(const AdhesionIntegral<dim> &adhesion, NeighbourGraph &graph)
+    {
+      const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
+      const Eigen::VectorXd  weights = lumped_weights(adhesion);
+      if (!adhesion.shears())
+        return lumped_energy(pieces, weights, stretches(adhesion));
+      const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
+      const unsigned int          n        = adhesion.n_nodes();
+      SeparableEnergy             result =
+        lumped_energy(pieces, weights.head(n), stretches(adhesion));
+      result.bonds.resize(weights.size());
+      std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
+      result.weights = Eigen::VectorXd::Ones(weights.size());
+      std::vector<unsigned int> shear_bonds(n, 0); // of nodes, 0 is none
+      const auto                add = [&](const auto      &vertex,
+                           const BondScale &bonds,
+                           const bool       has_own,
+                           unsigned int     bond) {
+        bool is_first = has_own;
+        for (const auto &tangent : vertex.tangents)
+          if (!tangent.is_held)
+            {
+              if (is_first)
+                {
+                  is_first = false;
+                  bond = static_cast<unsigned int>(result.f.size());
+                  result.f.push_back(
+                    pieces.scaled(weights(tangent.index) * bonds.stretch *
+                                    bonds.stretch / bonds.shear,
+                                  bonds.stretch));
+                  graph.emplace_back();
+                }
+              result.bonds[tangent.index] = bond;
+              // Without bonds any weight will do.
+              if (bonds.shear > 0.)
+                result.weights(tangent.index) = bonds.shear;
+            }
+        return bond;
+      };
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const BondScale bonds     = adhesion.points().bonds_at(i);
+          const bool      separates = bonds.shear_energy > 0.;
+          shear_bonds[i]            = add(boundary.nodes[i],
+                               separates ? bonds.in_shear() : bonds,
+                               separates,
+                               i);
+        }
+      for (unsigned int i = 0; i < n; ++i)
+        if (shear_bonds[i] >= n)
+          for (const unsigned int j : graph[i])
+            if (shear_bonds[j] >= n)
+              graph[shear_bonds[i]].insert(shear_bonds[j]);
+      for (const auto &vertex : boundary.held_vertices)
+        if (!vertex.tangents.empty())
+          {
+            BondScale bonds =
+              adhesion.points().bonds_at(vertex.position, vertex.boundary);
+            if (bonds.shear_energy > 0.)
+              bonds = bonds.in_shear();
+            if (bonds.shear == 0.)
+              bonds.shear = 1.;
+            add(vertex, bonds, true, 0);
+          }
+      return result;
+    }
+
+
+
+    /// Returns whether a sum over nodes of the law at their unknowns is Phi.
+    template <int dim>
+    bool
+    is_sum_over_nodes(const AdhesionIntegral<dim> &adhesion)
+    {
+      return adhesion.points().is_nodal() &&
+             std::none_of(adhesion.points().list().begin(),
+                          adhesion.points().list().end(),
+                          [](const auto &point) {
+                            return point.shears() && (point.offset != 0. ||
+                                                      !point.held_slip.empty());
+                          });
+    }
+
+
+
+    /// The coarse unknowns of a prolongation that meet at a fine one.
+    NeighbourGraph
+    coarse_neighbours(const Eigen::SparseMatrix<double> &P)
+    {
+      const Eigen::SparseMatrix<double> meeting = P.transpose() * P;
+      NeighbourGraph                    graph(P.cols());
+      for (unsigned int j = 0; j < meeting.cols(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(meeting, j);
+             entry;
+             ++entry)
+          if (entry.row() != j)
+            graph[j].insert(static_cast<unsigned int>(entry.row()));
+      return graph;
+    }
+
+
+
+    /// The search and the proof, from a point that they move.
+    template <int dim>
+    class MinimumSearch
+    {
+    public:
+      MinimumSearch(const SolverParameters      &parameters,
+                    const AdhesionIntegral<dim> &adhesion,
+                    const Condensation          &condensed,
+                    const Interruption          &interruption,
+                    Eigen::VectorXd             &s,
+                    WhichMinimum                &result)
+        : parameters(parameters)
+        , adhesion(adhesion)
+        , condensed(condensed)
+        , interruption(interruption)
+        , s(s)
+        , result(result)
+        , method(parameters.majorise_minimise)
+        , graph(neighbours(adhesion.contact_boundary()))
+        , lumped(lumped_bonds(adhesion, graph))
+        , work(parameters.search_operations)
+      {
+        // The scale of the gap: what the bonds can change in J. That is at most
+        // what they can take up when all of them break, and at most what the
+        // contact nodes gain without foundation and bonds, 1/2 g'S^{-1}g. |J|
+        // itself would hide bonds that matter little beside the energy of the
+        // body.
+        result.energy_of_bonds =
+          std::min(condensed.energy_of_kept(), lumped.largest_value());
+        result.search_nodes = adhesion.n_nodes();
+      }
+
+      void
+      search()
+      {
+        const Stage stage("search for a lower minimum");
+        // A trial costs a factorisation of S, n^3/3 operations. Beyond this
+        // size the fronts are sought on a coarser contact mesh.
+        if (s.size() <= largest_automatic_search)
+          search_all_nodes();
+        else
+          search_coarse_nodes();
+        // The full search includes what was done so far and has no limit of
+        // moves. A state that is proved needs none.
+        if (parameters.search == BondSearchChoice::full &&
+            result.kind != MinimumKind::global)
+          search_nodes({});
+        // What a limit of work has cut off has not tried all its moves, so that
+        // "best known" would claim too much; then only the state of the bonds
+        // counts.
+        const bool is_cut =
+          work.requested() && result.kind != MinimumKind::global;
+        result.operations = work.operations();
+        if (is_cut || (result.kind != MinimumKind::best_known &&
+                       result.kind != MinimumKind::global))
+          result.kind = kind_without_search(adhesion, s, &condensed);
+        if (!is_cut || interruption.requested())
+          return;
+        // The limit stops branch and bound in the way a signal does. Only the
+        // signal is to be called an interruption.
+        if (result.proof_status == ProofStatus::interrupted)
+          result.proof_status = ProofStatus::node_limit;
+        result.notes.push_back(
+          "the search for a lower minimum has ended at its limit of work, "
+          "after " +
+          std::to_string(result.search_trials) +
+          " states: there may be lower ones. Solver/Search = full has no "
+          "limit");
+      }
+
+      void
+      prove()
+      {
+        if (!is_sum_over_nodes(adhesion))
+          {
+            result.notes.push_back(
+              "no proof: it needs bonds that shear where no support moves their "
+              "boundary, or holds it above the foundation");
+            return;
+          }
+        const Stage  stage("proof");
+        const double functional =
+          condensed_functional(condensed_problem(condensed, adhesion), s);
+        BranchAndBoundParameters limits = proof_limits();
+        // Nodes of the tree that wait keep their intervals. Branch and bound
+        // ends with a valid gap before they take the memory that is left.
+        limits.maximum_bytes = memory_left(parameters.memory_limit);
+        const BranchAndBoundResult proof =
+          branch_and_bound(limits, lumped_problem(), s);
+        // The search may have proved the result already. A second proof that a
+        // limit has ended must not take that away.
+        if (result.kind != MinimumKind::global ||
+            proof.status == ProofStatus::proved)
+          add_proof(proof);
+        result.proof_history = proof.history;
+        // Branch and bound knows 1/2 s'S s - g's + Phi(s); J has c_0 besides.
+        for (ProofProgress &progress : result.proof_history)
+          {
+            progress.lower += condensed.energy_at_zero();
+            progress.upper += condensed.energy_at_zero();
+          }
+        // A state that is lower by less than the tolerance differs in rounding,
+        // and moving to it would only shake the result.
+        if (proof.upper < functional - limits.tolerance)
+          s = proof.s;
+      }
+
+    private:
+      const SolverParameters      &parameters;
+      const AdhesionIntegral<dim> &adhesion;
+      const Condensation          &condensed;
+      const Interruption          &interruption;
+      Eigen::VectorXd             &s;
+      WhichMinimum                &result;
+      const MajoriseMinimise       method;
+      NeighbourGraph               graph;
+      const SeparableEnergy        lumped;
+
+      WorkLimit work;
+
+      /// The guess for starts on many nodes, else empty.
+      ActiveSetGuess guess;
+
+      SearchProblem
+      problem()
+      {
+        return {{condensed.schur_complement(),
+                 condensed.load(),
+                 adhesion.contact_boundary().upper_bounds(),
+                 adhesion,
+                 work},
+                lumped,
+                graph,
+                method,
+                &guess,
+                &work};
+      }
+
+      SeparableProblem
+      lumped_problem() const
+      {
+        return {condensed.schur_complement(),
+                condensed.load(),
+                adhesion.contact_boundary().upper_bounds(),
+                lumped,
+                interruption};
+      }
+
+      BranchAndBoundParameters
+      proof_limits() const
+      {
+        BranchAndBoundParameters limits = parameters.proof;
+        // The tolerance of the scene is relative, branch and bound's is an
+        // energy.
+        limits.tolerance *= result.energy_of_bonds;
+        return limits;
+      }
+
+      void
+      add_search(const BranchSearchResult &search)
+      {
+        result.search_trials += search.trials;
+        result.search_improvements += search.improvements;
+        result.search_failures += search.failures;
+        // A trial that led to no minimum might have led to a lower one.
+        result.kind = search.complete && result.search_failures == 0 ?
+                        MinimumKind::best_known :
+                        MinimumKind::stationary;
+      }
+
+      void
+      add_proof(const BranchAndBoundResult &proof)
+      {
+        result.proof_attempted = true;
+        result.proof_status    = proof.status;
+        result.proof_nodes     = proof.nodes;
+        result.lower_bound     = proof.lower + condensed.energy_at_zero();
+        const double gap       = proof.upper - proof.lower;
+        // A gap below zero is rounding between two ways to compute the same
+        // energy.
+        result.relative_gap = gap > 0. ? gap / result.energy_of_bonds : 0.;
+        if (proof.status == ProofStatus::proved)
+          result.kind = MinimumKind::global;
+      }
+
+      void
+      search_all_nodes()
+      {
+        // With nodal quadrature each s_i has a law of its own, and Phi is
+        // separable, as the bound needs it. With others the lumped bonds only
+        // guide the search.
+        const GuidedSearchResult guided = guided_search(
+          problem(), is_sum_over_nodes(adhesion), proof_limits(), s);
+        add_search(guided.search);
+        // A proof that a limit of work has cut may not have come to any bound.
+        if (guided.proof && std::isfinite(guided.proof->lower))
+          add_proof(*guided.proof);
+      }
+
+      /// Starts from rest and from all bonds broken, the rest on coarser nodes.
+      void
+      search_coarse_nodes()
+      {
+        // The cheapest first: the bound at the point takes one factorisation,
+        // and where it proves the result there is nothing to search for.
+        if (try_bound_at_point())
+          return;
+        // Coarser spaces have no tangents.
+        if (!adhesion.shears())
+          guess =
+            ActiveSetGuess(condensed.schur_complement(),
+                           coarsen(adhesion.contact_boundary(), guess_nodes));
+        // Starts from rest and from all bonds broken find the minima that are
+        // far away. They need an active set from coarse spaces, since from afar
+        // it takes the more systems the more nodes there are.
+        BranchSearchParameters starts;
+        starts.maximum_shift = 0;
+        starts.flips         = false;
+        search_nodes(starts);
+        if (!adhesion.shears())
+          look_on_coarse_mesh();
+        BranchSearchParameters edges = starts;
+        edges.starts                 = false;
+        // The coarse mesh knows the fronts to within its nodes; moves by one
+        // node on the finest mesh put them in their places. The result may now
+        // be provable.
+        edges.maximum_shift = 1;
+        search_nodes(edges);
+        try_bound_at_point();
+      }
+
+      void
+      search_nodes(const BranchSearchParameters &moves)
+      {
+        add_search(search_branches(problem(), moves, s));
+      }
+
+      bool
+      try_bound_at_point()
+      {
+        // Without branching the bound needs laws that are separable and have
+        // finitely many quadratic pieces.
+        if (!is_sum_over_nodes(adhesion) || !lumped.is_piecewise_quadratic())
+          return false;
+        BranchAndBoundParameters no_nodes = proof_limits();
+        no_nodes.maximum_nodes            = 0;
+        const BranchAndBoundResult proof =
+          branch_and_bound(no_nodes, lumped_problem(), s);
+        if (proof.status == ProofStatus::proved)
+          add_proof(proof);
+        return proof.status == ProofStatus::proved;
+      }
+
+      /// A search on a coarser contact mesh. The best of it is minimised on the
+      /// finer ones, and taken if it is lower there.
+      void
+      look_on_coarse_mesh()
+      {
+        const auto prolongations =
+          coarsen(adhesion.contact_boundary(), largest_automatic_search);
+        const auto search = [&](const PiecewiseProblem &coarse,
+                                Eigen::VectorXd        &coarse_s) {
+          // The user has to know on how many nodes the whole search was done.
+          result.search_nodes = static_cast<unsigned int>(coarse_s.size());
+          // The coarse bonds act on s = P_1 ... P_k s_k, so that their Phi is
+          // not separable. What the proof calls a minimum of the lumped one is
+          // only another start.
+          Eigen::VectorXd weights = lumped_weights(adhesion);
+          for (const Eigen::SparseMatrix<double> &P : prolongations)
+            weights = (P.transpose() * weights).eval();
+          const SeparableEnergy coarse_lumped =
+            lumped_energy(adhesion.adhesive_law().pieces(),
+                          weights,
+                          stretches(adhesion, prolongations));
+          const NeighbourGraph coarse_graph =
+            coarse_neighbours(prolongations.back());
+          add_search(
+            guided_search(
+              {coarse, coarse_lumped, coarse_graph, method, nullptr, &work},
+              /*is_separable=*/false,
+              proof_limits(),
+              coarse_s)
+              .search);
+        };
+        std::vector<std::string> failures;
+        Eigen::VectorXd          point =
+          coarse_start(problem(), prolongations, method, failures, search);
+        CondensedProblem finest(problem(), point);
+        // The best coarse state, prolongated level by level, is minimised on
+        // the finest nodes as far as the limit of work allows.
+        const MajoriseMinimiseResult minimum =
+          minimise_trial(method, finest, [&](const auto &iteration) {
+            work.add(iteration.operations);
+            return !work.requested();
+          });
+        // A trial that fails weakens the word, one that the limit has stopped
+        // does not: the limit itself is reported. A state that is lower by
+        // rounding alone is none.
+        const auto given = CondensedProblem(problem(), s).evaluate();
+        if (minimum.status != SolverStatus::success)
+          result.search_failures += minimum.status != SolverStatus::interrupted;
+        else if (minimum.functional <
+                 given.functional - given.functional_rounding)
+          {
+            s = point;
+            ++result.search_improvements;
+          }
+      }
+    };
+  } // namespace
+
+
+
+  std::string
+  to_string(const MinimumKind kind)
+  {
+    static const std::array<const char *, 4> words = {
+      {"stationary", "local minimum", "best known", "global"}};
+    return words[static_cast<std::size_t>(kind)];
+  }
+
+
+
+  template <int dim>
+  MinimumKind
+  kind_without_search(const AdhesionIntegral<dim> &adhesion,
+                      const VectorView            &s,
+                      const Condensation          *condensed)
+  {
+    if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
+      return MinimumKind::global;
+    // With an energy that depends on the mode there is no J that it would be a
+    // minimum of.
+    if (adhesion.points().toughness_by_mode() != nullptr)
+      return MinimumKind::stationary;
+    // At a drop of the traction J has a concave kink, from which one of the two
+    // directions descends. So close to it rounding decides on which side a bond
+    // is, and nothing is claimed.
+    if (is_at_drop(adhesion, s, Tolerance::at_kink))
+      return MinimumKind::stationary;
+    // Away from kinks J is a convex quadratic on s <= 0: it rises around the
+    // point.
+    if (!adhesion.softens())
+      return MinimumKind::local_minimum;
+    // Where bonds soften, Phi'' is negative, and only S can tell whether it
+    // outweighs that.
+    if (condensed == nullptr)
+      return MinimumKind::stationary;
+    // The second-order condition: S + Phi'' is positive definite on the s_i
+    // that are free, with the smaller Phi'' where a bond is next to a kink.
+    // Nodes at s = 0 under pressure cannot move to first order; those that only
+    // touch the foundation can, and are free too.
+    const Eigen::MatrixXd S = condensed->schur_complement();
+    const Eigen::VectorXd pressure =
+      condensed->load() - S * s - adhesion.subgradient(s);
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < s.size(); ++i)
+      if (s(i) < 0. || pressure(i) <= Tolerance::at_kink *
+                                        condensed->load().cwiseAbs().maxCoeff())
+        free.push_back(i);
+    Eigen::MatrixXd A = S;
+    A += least_second_derivative(adhesion, s, Tolerance::at_kink);
+    return is_safely_positive_definite(A(free, free)) ?
+             MinimumKind::local_minimum :
+             MinimumKind::stationary;
+  }
+
+
+
+  template <int dim>
+  WhichMinimum
+  find_better_minimum(const SolverParameters      &parameters,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const Interruption          &interruption,
+                      Eigen::VectorXd             &s)
+  {
+    WhichMinimum result;
+    result.kind         = kind_without_search(adhesion, s, &condensed);
+    const bool searches = parameters.searches();
+    // A J without adhesion is convex, and its minimum is the only one.
+    if (result.kind == MinimumKind::global || !(searches || parameters.prove))
+      return result;
+
+    // The search comes first: a good upper value lets branch and bound discard
+    // more nodes.
+    MinimumSearch<dim> search(
+      parameters, adhesion, condensed, interruption, s, result);
+    if (searches)
+      search.search();
+    if (parameters.prove)
+      search.prove();
+    if (result.proof_attempted)
+      result.functional =
+        condensed_functional(condensed_problem(condensed, adhesion), s) +
+        condensed.energy_at_zero();
+    result.interrupted = interruption.requested();
+    return result;
+  }
+
+
+
+  void
+  round_outwards(const double  functional,
+                 const double  energy_rounding,
+                 WhichMinimum &minimum)
+  {
+    // S and g are taken as given by branch and bound, although elimination has
+    // rounded them. At the result the effect of that is known, as the
+    // difference between the condensed J and J from the strains, and it is as
+    // large at the point that the bound is about: hence twice. eps <u, D u>
+    // stands for what the rows of A lose, the last term for the sums of the
+    // bound itself.
+    const double rounding = 2. * std::abs(functional - minimum.functional) +
+                            8. * energy_rounding +
+                            16. * std::numeric_limits<double>::epsilon() *
+                              (std::abs(functional) + minimum.energy_of_bonds);
+    minimum.lower_bound -= rounding;
+    for (ProofProgress &progress : minimum.proof_history)
+      {
+        progress.lower -= rounding;
+        progress.upper += rounding;
+      }
+    // J below its own lower bound shows that something rounds worse than was
+    // assumed. Then nothing is known, and the proof is withdrawn.
+    if (functional < minimum.lower_bound)
+      {
+        minimum.kind         = MinimumKind::stationary;
+        minimum.proof_status = ProofStatus::no_bound;
+        minimum.lower_bound  = -std::numeric_limits<double>::infinity();
+      }
+    if (minimum.energy_of_bonds > 0.)
+      minimum.relative_gap =
+        (functional - minimum.lower_bound) / minimum.energy_of_bonds;
+  }
+
+
+
+  DEBOND_INSTANTIATE(kind_without_search);
+  DEBOND_INSTANTIATE(find_better_minimum);
+} // namespace Debond

@@ -1,0 +1,632 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/instantiate.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/minimum/contact_solver.h>
+#include <debond/solve/minimum/refinement.h>
+#include <debond/solve/path/bond_change.h>
+#include <debond/solve/path/global_branch.h>
+#include <debond/solve/path/load_path.h>
+#include <debond/solve/path/load_path_arc.h>
+
+#include <numeric>
+
+namespace Debond
+{
+  namespace
+  {
+    /// How often a step is done with new modes of its bonds.
+    constexpr unsigned int most_modes = 10;
+
+    /// What a step takes beside the minimisation, mostly for its verification:
+    /// at least, and for each unknown, in the time of a factorisation's
+    /// operations.
+    constexpr double least_of_step = 1e7, of_step = 4000.;
+
+
+
+    /// The table of a path in the log: the factors that vary, J, a number and
+    /// the state.
+    template <int dim>
+    class PathTable
+    {
+    public:
+      PathTable(const LoadPathParameters &parameters, std::ostream *const out)
+        : parameters(parameters)
+        , out(out)
+      {}
+
+      void
+      titles(const std::string &number) const
+      {
+        if (out == nullptr)
+          return;
+        factors<const char *>("factor", "displacement factor");
+        *out << std::setw(17) << "J" << std::setw(14) << number << "  state"
+             << std::endl;
+      }
+
+      void
+      row(const LoadFactors &of_row,
+          const double       functional,
+          const double       number,
+          const std::string &word) const
+      {
+        if (out == nullptr)
+          return;
+        factors(of_row.loads, of_row.displacements);
+        *out << std::scientific << std::setprecision(8) << std::setw(17)
+             << functional << std::defaultfloat << std::setprecision(3)
+             << std::setw(14) << number << std::setprecision(6) << "  " << word
+             << std::endl;
+      }
+
+      void
+      row(const LoadPathStep<dim> &step) const
+      {
+        row(step.factors(),
+            step.state.functional,
+            step.state.broken_part,
+            step.state.minimum.empty() ? step.status : step.state.minimum);
+      }
+
+      /// A row without numbers.
+      void
+      row(const LoadFactors &of_row, const std::string &word) const
+      {
+        if (out == nullptr)
+          return;
+        factors(of_row.loads, of_row.displacements);
+        *out << std::setw(17) << "" << std::setw(14) << ""
+             << "  " << word << std::endl;
+      }
+
+      void
+      section(const std::string &name) const
+      {
+        if (out != nullptr)
+          *out << "  " << name << '\n';
+      }
+
+    private:
+      /// Those that vary, or their titles.
+      template <typename Entry>
+      void
+      factors(const Entry &of_loads, const Entry &of_displacements) const
+      {
+        if (!parameters.moves_only())
+          *out << std::setw(11) << of_loads;
+        if (!parameters.displacement_factors.empty())
+          *out << std::setw(21) << of_displacements;
+      }
+
+      const LoadPathParameters &parameters;
+      std::ostream *const       out;
+    };
+
+
+
+    template <int dim>
+    class PathFollower
+    {
+    public:
+      PathFollower(const LoadPathParameters &parameters,
+                   const SolveSettings      &settings,
+                   const Scene<dim>         &scene,
+                   const FollowedPath<dim>  &start,
+                   std::ostream             *out)
+        : progress(start.progress)
+        , parameters(parameters)
+        , solver_parameters(settings.parameters)
+        , tolerance(settings.tolerance)
+        , scene(scene)
+        , table(parameters, out)
+        , result(start.result)
+        , choice(settings.choice)
+        , solver(steps.size() < parameters.factors.size() || parameters.arc ||
+                     parameters.global_branch != GlobalBranch::none ?
+                   make_contact_solver(choice, scene) :
+                   nullptr)
+        , condensed(solver ? solver->condensed() : nullptr)
+      {
+        const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+        if (steps.empty())
+          {
+            progress.u.reinit(unknowns.n_dofs());
+            unknowns.contact().add(last_point(), progress.u);
+            if (unknowns.has_gap() && !parameters.bonds_heal)
+              {
+                AdhesionIntegral<dim> at_rest = bonds_before();
+                at_rest.break_for_good(last_point());
+                progress.memory = at_rest.memory();
+              }
+          }
+        if (condensed != nullptr && unknowns.is_held_by_supports())
+          result.condition_estimate = condensed->condition_estimate();
+        result.parts["condensation"] += timer.wall_time();
+      }
+
+      void
+      follow(const LoadPathObserver<dim> &observer)
+      {
+        timer.restart();
+        table.titles("broken part");
+        for (const LoadPathStep<dim> &step : steps)
+          table.row(step);
+        if (!steps.empty())
+          go_on(observer);
+        while (steps.size() < parameters.factors.size() &&
+               (steps.empty() || steps.back().message.empty()))
+          {
+            if (!steps.empty() && interruption.requested())
+              {
+                interrupt("the path is not complete");
+                break;
+              }
+            if (!solve(parameters.at(static_cast<unsigned int>(steps.size())),
+                       observer))
+              break;
+            table.row(steps.back());
+          }
+        result.parts["followed path"] += timer.wall_time();
+        const BondMemory &memory = progress.memory;
+        const double      taken =
+          std::accumulate(memory.taken.begin(), memory.taken.end(), 0.);
+        if (memory.lag > Tolerance::lag_of_mode * taken)
+          result.notes.push_back(words(
+            "the mode of bonds changes within the steps in which they break, "
+            "which moves what they take by up to ",
+            std::round(1000. * memory.lag / taken) / 10.,
+            " per cent of it: take smaller steps there"));
+      }
+
+      /// Whether there are steps and the last one is verified. The path may be
+      /// shorter than the scene's: a signal, or a body that comes off, leaves
+      /// no step.
+      bool
+      has_no_failure() const
+      {
+        return !steps.empty() && steps.back().message.empty();
+      }
+
+      /// Where only bonds hold the body J may fall without end.
+      bool
+      has_global_branch() const
+      {
+        return condensed != nullptr && parameters.bonds_heal &&
+               scene.problem().unknowns().is_held_by_supports();
+      }
+
+      /// Of a path without failures, condensed.
+      void
+      find_global_branch()
+      {
+        if (interruption.requested())
+          {
+            if (result.status == SolverStatus::success)
+              interrupt("there is no global branch");
+            return;
+          }
+        const Stage stage("global branch");
+        timer.restart();
+        const CondensedScene<dim> condensed_scene = {scene, *condensed};
+        Branch                    followed;
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          {
+            const LoadFactors factors = steps[k].factors();
+            const BranchPoint point   = {
+                points[k],
+                condensed_functional(
+                condensed_problem(condensed_scene.at(factors),
+                                  condensed_scene.bonds(factors)),
+                points[k]),
+                {}};
+            const auto [entry, is_new] = followed.emplace(factors, point);
+            if (!is_new && point.functional < entry->second.functional)
+              entry->second = point;
+          }
+
+        table.section("global branch");
+        const bool proves = parameters.global_branch == GlobalBranch::prove;
+        table.titles(proves ? "gap" : "states tried");
+        // A search that was not asked for takes no longer than the path.
+        SolverParameters limited = solver_parameters;
+        if (parameters.global_branch == GlobalBranch::automatic)
+          limited.search_operations = operations_of_path();
+        const Branch branch = global_branch(
+          parameters.global_branch,
+          limited,
+          condensed_scene,
+          followed,
+          interruption,
+          [&](const LoadFactors factors, const BranchPoint &point) {
+            table.row(
+              factors,
+              point.functional + condensed_scene.at(factors).energy_at_zero(),
+              proves ?
+                std::stod(scientific_above(point.which.relative_gap, 2)) :
+                point.which.search_trials,
+              to_string(point.which.kind));
+          });
+        const auto n_cut =
+          std::count_if(branch.begin(), branch.end(), [](const auto &entry) {
+            return !entry.second.which.notes.empty();
+          });
+        if (n_cut > 0)
+          table.section(words("the search had as much work as the path takes, "
+                              "which was not enough at ",
+                              n_cut,
+                              " of ",
+                              branch.size(),
+                              " factors; Load path/Global branch = search has "
+                              "no limit"));
+        for (const auto &[factors, point] : branch)
+          add_global(factors, point);
+        if (interruption.requested())
+          interrupt("the global branch is not complete");
+        result.parts["global branch"] = timer.wall_time();
+      }
+
+      /// From the state of the first factor, condensed.
+      std::vector<LoadPathStep<dim>>
+      find_arc()
+      {
+        // needs_condensed() asks for it where there is an arc.
+        Assert(condensed != nullptr, dealii::ExcInternalError());
+        timer.restart();
+        const LoadPathArc<dim> arc = follow_arc<dim>({scene, *condensed},
+                                                     points[0],
+                                                     tolerance,
+                                                     interruption);
+        if (arc.interrupted)
+          interrupt("the arc is not complete");
+        if (!arc.note.empty())
+          result.notes.push_back(arc.note);
+        result.parts["arc"] = timer.wall_time();
+        return arc.steps;
+      }
+
+      SolveResult
+      take_result()
+      {
+        // Numbers of the last factor; the state's word may come from the global
+        // branch.
+        if (steps.empty())
+          {
+            result.u.reinit(scene.problem().unknowns().n_dofs());
+            result.functional = std::numeric_limits<double>::quiet_NaN();
+            return result;
+          }
+        result.u            = progress.u;
+        result.load_factor  = steps.back().factors();
+        result.functional   = steps.back().state.functional;
+        result.minimum.kind = kinds.back();
+        return result;
+      }
+
+      PathProgress<dim>               progress;
+      std::vector<LoadPathStep<dim>> &steps = progress.steps;
+
+    private:
+      /// From the last step of an earlier run.
+      void
+      go_on(const LoadPathObserver<dim> &observer)
+      {
+        const LoadFactors     factors = steps.back().factors();
+        AdhesionIntegral<dim> bonds =
+          scene.adhesion().at(factors.displacements);
+        bonds.set_memory(progress.memory);
+        if (solver)
+          solver->start_from(points.back(), progress.u);
+        observer(
+          progress,
+          VerifiedState<dim>(scene, bonds, factors, progress.u).verification,
+          bonds);
+      }
+
+      /// Returns whether there is a next step: not if the body comes off.
+      bool
+      solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
+      {
+        const Stage           stage("load path, step " +
+                          std::to_string(steps.size() + 1) + ", " +
+                          parameters.name(factors));
+        AdhesionIntegral<dim> bonds =
+          scene.adhesion().at(factors.displacements);
+        bonds.set_memory(progress.memory);
+        const ContactMinimum minimum = minimise(factors, bonds);
+        if (const auto direct = factorisation_instead(
+              scene, solver_parameters, choice, minimum.status))
+          {
+            result.notes.push_back(multigrid_has_failed + minimum.message);
+            choice = *direct;
+            solver.reset();
+            solver    = make_contact_solver(choice, scene);
+            condensed = solver->condensed();
+            solver->start_from(last_point(), progress.u);
+            return solve(factors, observer);
+          }
+        if (minimum.status == SolverStatus::interrupted && !steps.empty())
+          {
+            interrupt("the path is not complete");
+            return false;
+          }
+        add_majorise_result(minimum, result);
+        result.message.clear();
+        if (minimum.status == SolverStatus::comes_off)
+          {
+            result.comes_off_at = factors;
+            result.message      = minimum.message;
+            table.row(factors, to_string(minimum.status));
+            return false;
+          }
+        add_step(factors, minimum, bonds, observer);
+        return true;
+      }
+
+      /// The minimum from the state before. The fracture energy of bonds may
+      /// depend on the mode at which they are damaged, which only the minimum
+      /// tells: it is sought again with the modes found, until they hold.
+      ContactMinimum
+      minimise(const LoadFactors factors, AdhesionIntegral<dim> &bonds)
+      {
+        const AdhesionIntegral<dim> last = bonds_before();
+        for (unsigned int k = 1;; ++k)
+          {
+            Progress silent;
+            bonds.freeze_mode();
+            const ContactMinimum minimum =
+              solver->minimise(factors, bonds, solver_parameters, silent);
+            if (!can_be_verified(minimum.status) ||
+                bonds.adapt_mode(last, last_point(), solver->point()) <=
+                  Tolerance::lag_of_mode ||
+                k == most_modes)
+              return minimum;
+            solver->start_from(last_point(), progress.u);
+          }
+      }
+
+      Eigen::VectorXd
+      last_point() const
+      {
+        return points.empty() ? scene.problem().unknowns().contact().at_rest() :
+                                points.back();
+      }
+
+      /// The bonds of the last step. To begin with the body is at rest, where
+      /// gaps may stretch them beyond what they return from.
+      AdhesionIntegral<dim>
+      bonds_before() const
+      {
+        AdhesionIntegral<dim> bonds = scene.adhesion().at(
+          steps.empty() ? 0. : steps.back().factors().displacements);
+        bonds.set_memory(progress.memory);
+        return bonds;
+      }
+
+      /// The step to a minimum. Bonds that do not heal break where it is.
+      void
+      add_step(const LoadFactors            factors,
+               const ContactMinimum        &minimum,
+               AdhesionIntegral<dim>       &bonds,
+               const LoadPathObserver<dim> &observer)
+      {
+        // The first change on the way is one of the bonds as they were before.
+        std::optional<double> change_factor;
+        if (!steps.empty() && condensed != nullptr)
+          change_factor =
+            first_bond_change<dim>({scene, *condensed},
+                                   bonds,
+                                   {steps.back().factors(), points.back()},
+                                   factors,
+                                   interruption);
+        progress.u = solver->displacement();
+        refine(bonds, factors, *solver->correction(), progress.u);
+        points.push_back(solver->point());
+        if (!parameters.bonds_heal)
+          bonds.break_for_good(scene.contact_trace(progress.u));
+        progress.memory = bonds.memory();
+
+        const VerifiedState<dim> state(scene, bonds, factors, progress.u);
+        LoadPathStep<dim>        step =
+          step_of(state, static_cast<unsigned int>(steps.size() + 1), factors);
+        step.change_factor = change_factor;
+        step.iterations    = static_cast<unsigned int>(minimum.history.size());
+        step.status        = to_string(minimum.status);
+        // Only bonds that soften ask for S and g there.
+        std::optional<Condensation> at_step;
+        if (condensed != nullptr && bonds.softens())
+          at_step = CondensedScene<dim>{scene, *condensed}.at(factors);
+        kinds.push_back(kind_without_search(bonds,
+                                            points.back(),
+                                            at_step ? &*at_step : nullptr));
+        judge(minimum, state.verification, step);
+        steps.push_back(step);
+        observer(progress, state.verification, bonds);
+      }
+
+      /// Status and message of a step, by what the solver and the verification
+      /// say. Where rounding kept the solver from its tolerance the
+      /// verification decides.
+      void
+      judge(const ContactMinimum    &minimum,
+            const Verification<dim> &verification,
+            LoadPathStep<dim>       &step)
+      {
+        const std::string own = location(step) + minimum.message;
+        if (!can_be_verified(minimum.status))
+          step.message = result.message = own;
+        else if (!is_verified(verification))
+          {
+            step.message = location(step) + failure(verification);
+            if (minimum.status == SolverStatus::success)
+              step.status = "not verified";
+            else
+              result.message = own;
+          }
+        else
+          {
+            step.state.minimum = to_string(kinds.back());
+            if (minimum.status == SolverStatus::stagnated)
+              {
+                result.status = SolverStatus::success;
+                step.status   = to_string(result.status);
+                if (result.notes.empty())
+                  result.notes.push_back(own);
+              }
+          }
+      }
+
+      void
+      refine(const AdhesionIntegral<dim> &bonds,
+             const LoadFactors            factors,
+             CorrectionSolver            &correction,
+             DofVector                   &u)
+      {
+        const Refined refined = refine_where_needed(
+          scene, bonds, factors, correction, interruption, u);
+        result.is_refined = refined.is_refined;
+        if (!refined.note.empty() && result.notes.empty())
+          result.notes.push_back(refined.note);
+      }
+
+      bool
+      is_verified(const Verification<dim> &verification) const
+      {
+        return verification.error() <= tolerance;
+      }
+
+      std::string
+      failure(const Verification<dim> &verification) const
+      {
+        return verification.failure(tolerance, condensed == nullptr);
+      }
+
+      std::string
+      location(const LoadPathStep<dim> &step) const
+      {
+        return Debond::location(parameters, step);
+      }
+
+      /// As a factorisation, a factor of S for each majorant, and what steps
+      /// take besides. It is the same if the path was cut in two runs.
+      double
+      operations_of_path() const
+      {
+        double n_majorants = 0.;
+        for (const LoadPathStep<dim> &step : steps)
+          n_majorants += step.iterations;
+        return choice.operations +
+               n_majorants / 3. * std::pow(double(points[0].size()), 3.) +
+               double(steps.size()) *
+                 (least_of_step +
+                  of_step * double(scene.problem().unknowns().n_dofs()));
+      }
+
+      /// Enters a point of the global branch at all steps with its factors.
+      void
+      add_global(const LoadFactors factors, const BranchPoint &point)
+      {
+        const CondensedScene<dim>   condensed_scene = {scene, *condensed};
+        const AdhesionIntegral<dim> bonds_there =
+          condensed_scene.bonds(factors);
+        DofVector u = condensed_scene.at(factors).expand(point.s);
+        refine(bonds_there, factors, *solver->correction(), u);
+        VerifiedState<dim>  state(scene, bonds_there, factors, u);
+        LoadPathState<dim> &global   = state.state;
+        const bool          verified = is_verified(state.verification);
+        if (verified)
+          global.minimum = to_string(point.which.kind);
+        // Without loads J is rounding of what it is at other factors.
+        double rounding = 0.;
+        for (const LoadPathStep<dim> &step : steps)
+          rounding =
+            std::max(rounding,
+                     Tolerance::epsilon * std::abs(step.state.functional));
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          if (steps[k].factors() == factors)
+            {
+              LoadPathStep<dim> &step = steps[k];
+              step.global             = global;
+              if (point.which.proof_attempted)
+                step.relative_gap = point.which.relative_gap;
+              if (!verified && step.message.empty())
+                step.message = location(step) +
+                               "global branch: " + failure(state.verification);
+              // The followed state is this one, or as good.
+              if (step.message.empty() &&
+                  step.state.functional <= global.functional + rounding +
+                                             solver_parameters.proof.tolerance *
+                                               std::abs(global.functional))
+                {
+                  kinds[k]           = point.which.kind;
+                  step.state.minimum = global.minimum;
+                }
+            }
+      }
+
+      void
+      interrupt(const std::string &what)
+      {
+        result.status  = SolverStatus::interrupted;
+        result.message = location(steps.back()) + "interrupted, " + what;
+      }
+
+      const LoadPathParameters &parameters;
+      const SolverParameters   &solver_parameters;
+      const double              tolerance; ///< of the verification
+      const Scene<dim>         &scene;
+      const PathTable<dim>      table;
+      const Interruption       &interruption = Interruption::by_signal();
+      // Before the solver: its time when that is made is the condensation.
+      dealii::Timer timer;
+      SolveResult   result;
+
+
+      MethodChoice                        choice;
+      std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed
+      const Condensation *condensed; ///< null with multigrid as well
+
+      std::vector<Eigen::VectorXd> &points = progress.points;
+      std::vector<MinimumKind>     &kinds  = progress.kinds;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  FollowedPath<dim>
+  follow_load_path(const LoadPathParameters    &parameters,
+                   const SolveSettings         &settings,
+                   const Scene<dim>            &scene,
+                   const FollowedPath<dim>     &start,
+                   const LoadPathObserver<dim> &observer,
+                   std::ostream                *out)
+  {
+    FollowedPath<dim> followed;
+    PathFollower<dim> path(parameters, settings, scene, start, out);
+    path.follow([&](const PathProgress<dim>     &progress,
+                    const Verification<dim>     &verification,
+                    const AdhesionIntegral<dim> &bonds) {
+      followed.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
+      observer(progress, verification, bonds);
+    });
+    const bool wants_branch = parameters.global_branch != GlobalBranch::none;
+    if (wants_branch && path.has_global_branch() && path.has_no_failure())
+      path.find_global_branch();
+    if (parameters.arc && path.has_no_failure())
+      followed.arc = path.find_arc();
+    followed.result = path.take_result();
+    if (parameters.asks_for_branch && wants_branch && !path.has_global_branch())
+      followed.result.notes.push_back(
+        "There is no global branch: it is for bonds that heal, a direct linear "
+        "solver and bodies that not only bonds and the foundation hold.");
+    followed.progress = std::move(path.progress);
+    return followed;
+  }
+
+
+
+  DEBOND_INSTANTIATE(follow_load_path);
+} // namespace Debond

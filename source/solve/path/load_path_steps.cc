@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
+#include <debond/solve/path/load_path_steps.h>
+
+namespace Debond
+{
+  template <int dim>
+  std::string
+  location(const LoadPathParameters &parameters, const LoadPathStep<dim> &step)
+  {
+    return "load path, step " + std::to_string(step.step) + ", " +
+           parameters.name(step.factors()) + ": ";
+  }
+
+
+
+  template <int dim>
+  VerifiedState<dim>::VerifiedState(const Scene<dim>            &scene,
+                                    const AdhesionIntegral<dim> &bonds,
+                                    const LoadFactors            factors,
+                                    const DofVector             &u)
+    : verification(
+        verify(scene.problem(), bonds, u, factors, scene.least_force()))
+    , state(load_path_state(scene.problem(), bonds, factors, u, verification))
+  {
+    const auto add = [&](const std::string &kind, const Probes<dim> &probes) {
+      for (const auto &[name, vector] :
+           probes.values(scene.problem(), u, factors))
+        state.vectors.emplace_back(kind + as_title(name), vector);
+    };
+    add("mean_", scene.means());
+    add("probe_", scene.probes());
+  }
+
+
+
+  template <int dim>
+  LoadPathStep<dim>
+  step_of(const VerifiedState<dim> &state,
+          const unsigned int        k,
+          const LoadFactors         factors)
+  {
+    LoadPathStep<dim> step   = {};
+    step.step                = k;
+    step.factor              = factors.loads;
+    step.displacement_factor = factors.displacements;
+    step.state               = state.state;
+    return step;
+  }
+
+
+
+  template <int dim>
+  LoadPathTotals
+  load_path_totals(const std::vector<LoadPathStep<dim>> &steps,
+                   const unsigned int                    n_factors)
+  {
+    LoadPathTotals totals;
+    totals.factors = n_factors;
+    totals.steps   = static_cast<unsigned int>(steps.size());
+    totals.last    = steps.back().factors();
+
+    double broken = 0.;
+    for (const LoadPathStep<dim> &step : steps)
+      {
+        const BondChange change = {step.step,
+                                   step.factor,
+                                   step.displacement_factor,
+                                   step.change_factor,
+                                   broken,
+                                   step.state.broken_part};
+        const double     growth = change.broken_after - change.broken_before;
+        const auto       size   = [](const std::optional<BondChange> &other) {
+          return other ? std::abs(other->broken_after - other->broken_before) :
+                                 Tolerance::decimals;
+        };
+        if (growth > size(totals.largest_break))
+          totals.largest_break = change;
+        if (-growth > size(totals.largest_closing))
+          totals.largest_closing = change;
+        broken = change.broken_after;
+
+        if (step.global)
+          {
+            const double excess =
+              step.state.functional - step.global->functional;
+            const double scale = std::abs(step.global->functional);
+            ++totals.compared;
+            if (excess > Tolerance::decimals * scale)
+              {
+                ++totals.above_global;
+                totals.largest_excess =
+                  std::max(totals.largest_excess, excess / scale);
+              }
+          }
+      }
+    return totals;
+  }
+
+
+  DEBOND_INSTANTIATE(location);
+  DEBOND_INSTANTIATE(step_of);
+  DEBOND_INSTANTIATE_CLASS(VerifiedState);
+  DEBOND_INSTANTIATE(load_path_totals);
+} // namespace Debond

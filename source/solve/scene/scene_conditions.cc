@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+#include <debond/base/instantiate.h>
+#include <debond/base/tolerances.h>
+#include <debond/mesh/field_value.h>
+#include <debond/solve/scene/scene_conditions.h>
+
+namespace Debond
+{
+  namespace
+  {
+    template <typename Id>
+    void
+    insert(const std::set<Id> &ids, std::set<Id> &all)
+    {
+      all.insert(ids.begin(), ids.end());
+    }
+
+
+
+    /// Calls @p function(name, id) for the faces of contact boundaries for
+    /// which something is set by entries, @p entries by their names.
+    template <typename Function>
+    void
+    for_contact_boundaries(const ProblemParameters                  &given,
+                           const std::map<std::string, std::string> &entries,
+                           const BoundaryConditions                 &conditions,
+                           const Function                           &function)
+    {
+      const std::set<std::string> &in_contact = given.contact_boundaries;
+      // A face may have one value only, while pieces with names may overlap.
+      std::map<dealii::types::boundary_id, std::string> taken;
+      for (const auto &[name, entry] : entries)
+        for (const dealii::types::boundary_id id : conditions.names.at(name))
+          {
+            if (conditions.contact.count(id) == 0)
+              throw EntryError(entry,
+                               name + " is not in contact, but " +
+                                 join({in_contact.begin(), in_contact.end()},
+                                      ", "));
+            const auto [other, is_first] = taken.emplace(id, name);
+            if (!is_first)
+              throw EntryError(entry,
+                               name + " overlaps " + other->second +
+                                 ", for which it is set as well");
+            function(name, id);
+          }
+    }
+
+
+
+    /// The entries of a family, by the names of boundaries.
+    std::map<std::string, std::string>
+    entries_of(const std::string                        &family,
+               const std::map<std::string, std::string> &texts)
+    {
+      std::map<std::string, std::string> entries;
+      for (const auto &[name, unused] : texts)
+        entries[name] = family + ' ' + name;
+      return entries;
+    }
+
+
+
+    /// Components that a scene prescribes, "free" for those that it does not.
+    template <int dim>
+    PrescribedDisplacement<dim>
+    prescribed_displacement(const std::string &name,
+                            const std::string &text,
+                            const Constants   &constants)
+    {
+      PrescribedDisplacement<dim> result;
+      const DisplacementText      components(text);
+      result.name   = name;
+      result.values = make_function<dim>(components.expressions, constants);
+      for (unsigned int d = 0; d < dim; ++d)
+        result.components[d] = components.is_prescribed[d];
+      return result;
+    }
+  } // namespace
+
+
+
+  BoundaryConditions
+  make_conditions(const ProblemParameters &given, const PieceNames &names)
+  {
+    const BoundaryNames &boundaries = names.boundaries;
+    BoundaryConditions   conditions;
+    // Names become sets of ids, since one face may belong to several pieces.
+    for (const std::string &name : given.clamped_boundaries)
+      insert(boundaries.at(name), conditions.clamped);
+    for (const std::string &name : given.contact_boundaries)
+      insert(boundaries.at(name), conditions.contact);
+    conditions.names    = boundaries;
+    conditions.symmetry = given.symmetry;
+    for (const std::string &name : names.interfaces)
+      {
+        // Without a contact condition on both sides of a cut the two bodies
+        // would move through each other.
+        const auto &sides = boundaries.at(name);
+        if (!std::includes(conditions.contact.begin(),
+                           conditions.contact.end(),
+                           sides.begin(),
+                           sides.end()))
+          throw EntryError("Boundary conditions/Contact boundary",
+                           "the bodies on both sides of " + name +
+                             " could go through each other: it has to have " +
+                             name +
+                             ", which is both sides; bonds are left out by " +
+                             (given.law.name == "winkler" ?
+                                "Bond stiffness " + name + " = 0" :
+                                "a Traction factor that is 0 there"));
+        insert(boundaries.at(name + "_high"), conditions.high_sides);
+        insert(boundaries.at(name + "_low"), conditions.low_sides);
+      }
+    // Bonds without stiffness leave the body free to slide.
+    const auto or_free = [&](const TangentialDisplacement wanted) {
+      double     stiffness;
+      const bool is_none =
+        given.law.pieces[0].curvature == 0. ||
+        (read_number(given.shear.stiffness, stiffness) && stiffness == 0.);
+      return wanted == TangentialDisplacement::bonded && is_none ?
+               TangentialDisplacement::free :
+               wanted;
+    };
+    conditions.tangential_displacement = or_free(given.tangential_displacement);
+    const auto &own                    = given.tangential_displacements;
+    for_contact_boundaries(
+      given,
+      entries_of("Contact law/Tangential displacement", own),
+      conditions,
+      [&](const std::string &name, const dealii::types::boundary_id id) {
+        const std::string &word = own.at(name);
+        conditions.own_tangential_displacements[id] =
+          word == "fixed" ? TangentialDisplacement::fixed :
+          word == "free"  ? TangentialDisplacement::free :
+                            or_free(TangentialDisplacement::bonded);
+      });
+    return conditions;
+  }
+
+
+
+  ByRegion<Material>
+  make_materials(const MaterialParameters &parameters,
+                 const RegionNames        &regions)
+  {
+    ByRegion<Material> materials(parameters.everywhere);
+    std::map<dealii::types::material_id, std::string> taken;
+    for (const auto &[name, material] : parameters.of_regions())
+      for (const dealii::types::material_id id : regions.at(name))
+        {
+          const auto [other, is_first] = taken.emplace(id, name);
+          if (!is_first)
+            throw EntryError(parameters.entry_of(name),
+                             "the region overlaps " + other->second +
+                               ", which has a material of its own as well");
+          materials.set(id, material);
+        }
+    return materials;
+  }
+
+
+
+  template <int dim>
+  Supports<dim>
+  make_supports(const ProblemParameters  &given,
+                const BoundaryConditions &conditions)
+  {
+    const BoundaryNames &boundaries = conditions.names;
+    const Constants     &constants  = given.loads.constants;
+    Supports<dim>        supports;
+    // Clamps are conditions on boundaries; all other supports are values of
+    // components, or of the normal one for rollers.
+    for (const auto &[name, text] : given.supports.displacements)
+      {
+        supports.displacements.push_back(
+          prescribed_displacement<dim>(name, text, constants));
+        supports.displacements.back().boundaries = boundaries.at(name);
+      }
+    for (const std::string &name : given.supports.rollers)
+      supports.displacements.push_back({name, boundaries.at(name), true});
+    // What all contact boundaries have comes first, and those with an entry of
+    // their own replace it.
+    const auto add = [&](const std::string                        &entry,
+                         const std::string                        &text,
+                         const std::map<std::string, std::string> &own,
+                         const unsigned int                        n_components,
+                         auto                                     &fields) {
+      // Cuts have no foundation whose direction an entry without a name could
+      // mean, but gaps.
+      if (!text.empty())
+        for (const dealii::types::boundary_id id : conditions.contact)
+          if (n_components == 1 || conditions.high_sides.count(id) == 0)
+            fields[id] = {"",
+                          make_function<dim>(text, constants, n_components)};
+      for_contact_boundaries(given,
+                             entries_of(entry, own),
+                             conditions,
+                             [&](const std::string               &name,
+                                 const dealii::types::boundary_id id) {
+                               fields[id] = {name,
+                                             make_function<dim>(own.at(name),
+                                                                constants,
+                                                                n_components)};
+                             });
+    };
+    add("Contact law/Initial gap",
+        given.supports.gap,
+        given.supports.gaps,
+        1,
+        supports.gaps);
+    add("Boundary conditions/Foundation normal",
+        given.supports.normal,
+        given.supports.normals,
+        dim,
+        supports.normals);
+    return supports;
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<BondField<dim>>
+  make_bond_field(const ProblemParameters  &given,
+                  const AdhesiveLaw        &law,
+                  const BoundaryConditions &conditions)
+  {
+    // A number is made a constant function: parsed expressions cost much more
+    // at each point, and most bonds differ by boundary only.
+    using Field      = typename BondField<dim>::Field;
+    using Bonds      = typename BondField<dim>::Bonds;
+    const auto field = [&](const std::string &text) -> Field {
+      if (text.empty())
+        return nullptr;
+      if (double number; read_number(text, number))
+        return std::make_shared<const dealii::Functions::ConstantFunction<dim>>(
+          number);
+      return make_function<dim>(text, given.loads.constants, 1);
+    };
+    std::map<std::string, std::string> entries;
+    std::map<std::string, Bonds>       bonds;
+    for (const auto &[name, texts] : given.law.boundaries)
+      {
+        bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
+        for (const std::string entry : {"Bond stiffness", "Bond threshold"})
+          if (const std::string path = "Contact law/" + entry + ' ' + name;
+              given.locations.count(path) > 0)
+            entries.emplace(name, path);
+      }
+    std::map<dealii::types::boundary_id, Bonds> boundaries;
+    for_contact_boundaries(given,
+                           entries,
+                           conditions,
+                           [&](const std::string               &name,
+                               const dealii::types::boundary_id id) {
+                             boundaries[id] = bonds[name];
+                           });
+    // The scales are relative to the law's own stiffness and threshold; of laws
+    // other than the paper's the traction factor takes the place of the
+    // stiffness.
+    ShearBonds shear;
+    shear.is_relative = given.law.name != "winkler";
+    for (const dealii::types::boundary_id id : conditions.contact)
+      if (conditions.tangential(id) == TangentialDisplacement::bonded)
+        shear.boundaries.insert(id);
+    double number;
+    if (!shear.boundaries.empty() && read_number(given.shear.stiffness, number))
+      shear.stiffness = number / law.second_derivative(0.);
+    if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
+      {
+        const double whole       = number / law.pieces().largest_value();
+        const double power       = given.shear.exponent;
+        const bool   is_relative = shear.is_relative;
+        // The energy in shear over that of the bonds of a point.
+        const auto ratio = [=](const double energy) {
+          return is_relative ? whole : whole / energy;
+        };
+        using MixedMode = ShearParameters::MixedMode;
+        if (given.shear.mixed_mode == MixedMode::none)
+          shear.energy = whole;
+        else if (given.shear.mixed_mode == MixedMode::benzeggagh_kenane)
+          shear.toughness = [=](const double m, const double energy) {
+            return 1. + (ratio(energy) - 1.) * std::pow(m, power);
+          };
+        else
+          shear.toughness = [=](const double m, const double energy) {
+            return std::pow(std::pow(1. - m, power) +
+                              std::pow(m / ratio(energy), power),
+                            -1. / power);
+          };
+      }
+    return std::make_unique<BondField<dim>>(
+      shear.is_relative ? 1. : law.curvature(0.),
+      law.bond_threshold(),
+      Bonds{"", field(given.law.stiffness), field(given.law.threshold)},
+      boundaries,
+      shear);
+  }
+
+
+
+  std::vector<double>
+  displacement_factors(const LoadPathParameters &load_path)
+  {
+    std::vector<double> factors;
+    for (unsigned int k = 0; k < load_path.factors.size(); ++k)
+      factors.push_back(load_path.at(k).displacements);
+    return factors.empty() ? std::vector<double>{1.} : factors;
+  }
+
+
+
+  template <int dim>
+  void
+  check_held_vertices(const ElasticUnknowns<dim> &unknowns,
+                      const std::vector<double>  &load_factors)
+  {
+    // A vertex whose normal displacement is prescribed is no contact node, so s
+    // <= 0 has to hold for it at all factors by the data. Values that are zero
+    // by cancellation are as wrong as others are, hence a tolerance relative to
+    // the largest of them.
+    const ContactBoundary<dim> &boundary = unknowns.contact().boundary();
+    double                      largest  = 0.;
+    for (const auto &node : boundary.nodes)
+      largest = std::max(largest, std::abs(node.gap));
+    for (const auto &vertex : boundary.held_vertices)
+      largest = std::max(
+        {largest, std::abs(vertex.gap), std::abs(vertex.normal_displacement)});
+    for (const auto &vertex : boundary.held_vertices)
+      for (const double factor : load_factors)
+        {
+          const double normal = factor * vertex.normal_displacement;
+          if (vertex.is_tangential ||
+              normal - vertex.gap <=
+                Tolerance::rounding_of_data * (1. + std::abs(factor)) * largest)
+            continue;
+          if (vertex.normal_displacement == 0.)
+            throw SupportError(SupportError::Subject::gap,
+                               "",
+                               "it is negative where the body is held, at " +
+                                 point_text(vertex.position));
+          throw SupportError(SupportError::Subject::displacement,
+                             unknowns.support_names().at(vertex.support),
+                             (vertex.low_support <
+                                  unknowns.support_names().size() ?
+                                "supports push the bodies into each other at " :
+                                "it pushes the body into the foundation at ") +
+                               point_text(vertex.position));
+        }
+  }
+
+
+
+  DEBOND_INSTANTIATE(make_supports);
+  DEBOND_INSTANTIATE(make_bond_field);
+  DEBOND_INSTANTIATE(check_held_vertices);
+} // namespace Debond
