@@ -26,31 +26,27 @@ scene_of(const Debond::Parameters &parameters)
 
 
 
+/// With the linear solver for the scene's mesh.
 template <int dim>
-Debond::SolveSettings
-settings_of(const Debond::Parameters &parameters,
-            const Debond::Scene<dim> &scene)
+Debond::MethodChoice
+choice_on(const Debond::Parameters &parameters, const Debond::Scene<dim> &scene)
 {
   Debond::MethodChoice choice = choice_of(parameters);
   Debond::choose_linear_solver(scene, parameters.solver, choice);
-  return {choice, parameters.solver, parameters.verification.tolerance};
+  return choice;
 }
 
 
 
 /// From rest or from @p start.
 template <int dim>
-Debond::SolveResult
+Debond::Solution
 solved(const Debond::Parameters &parameters,
        const Debond::Scene<dim> &scene,
        const Debond::DofVector  *start = nullptr)
 {
-  return Debond::solve(settings_of(parameters, scene).choice,
-                       parameters.solver,
-                       scene,
-                       nullptr,
-                       false,
-                       start);
+  return Debond::solve(
+    choice_on(parameters, scene), parameters.solver, scene, {}, start);
 }
 
 #endif

@@ -250,7 +250,7 @@ namespace Debond
   void
   Certification<dim>::make(const CertificateKind kind_of_this,
                            const std::shared_ptr<const Scene<dim>> &scene,
-                           const SolveResult                       &result)
+                           const Solution                          &result)
   {
     certificate = Certifier<dim>(kind_of_this, scene)
                     .certify(result.u,
@@ -270,7 +270,7 @@ namespace Debond
   template <int dim>
   GoalOnMesh
   Certification<dim>::look(const std::shared_ptr<const Scene<dim>> &scene,
-                           const SolveResult                       &result,
+                           const Solution                          &result,
                            const bool                               is_last)
   {
     const std::string failure = no_certificate([&]() {
@@ -328,17 +328,16 @@ namespace Debond
 
   template <int dim>
   void
-  Certification<dim>::after(const std::shared_ptr<const Scene<dim>> &scene,
-                            RunResult<dim>                          &result)
+  Certification<dim>::after(RunResult<dim> &result)
   {
     // With a target the goal has made the certificate of the last mesh already.
     if (kind != CertificateKind::none && result.is_success() && !certificate)
       {
         dealii::Timer     timer;
         const std::string failure = no_certificate([&]() {
-          make(kind, scene, result.solve);
+          make(kind, result.scene, result.solution);
           if (Interruption::by_signal().requested())
-            result.solve.minimum.interrupted = true;
+            result.solution.minimum.interrupted = true;
         });
         if (!failure.empty())
           result.notes.push_back(failure);
@@ -346,8 +345,8 @@ namespace Debond
       }
     if (certificate)
       {
-        result.cell_fields = fields_of_cells(*scene, *certificate);
-        result.face_fields = fields_of_faces(*scene, *certificate);
+        result.cell_fields = fields_of_cells(*result.scene, *certificate);
+        result.face_fields = fields_of_faces(*result.scene, *certificate);
       }
   }
 

@@ -46,7 +46,7 @@ namespace Debond
   namespace
   {
     void
-    write_iterations(const SolveResult &result, const std::string &path)
+    write_iterations(const Solution &result, const std::string &path)
     {
       const std::optional<double> found =
         result.is_replaced ? std::make_optional(result.functional) :
@@ -76,9 +76,9 @@ namespace Debond
                        },
                        [&](const std::string &path) {
                          write_body_vtu(scene.problem(),
-                                        result.solve.u,
+                                        result.solution.u,
                                         path,
-                                        result.solve.load_factor,
+                                        result.solution.load_factor,
                                         result.estimate ? &*result.estimate :
                                                           nullptr,
                                         result.cell_fields);
@@ -101,18 +101,23 @@ namespace Debond
        }},
       {"history.csv",
        [&]() { return output.history; },
-       [&](const std::string &path) { write_iterations(result.solve, path); }},
+       [&](const std::string &path) {
+         write_iterations(result.solution, path);
+       }},
       {"displacement.txt",
        [&]() { return output.displacement && result.has_displacement(); },
        [&](const std::string &path) {
-         write_displacement(scene.problem().unknowns(), result.solve.u, path);
+         write_displacement(scene.problem().unknowns(),
+                            result.solution.u,
+                            path);
        }},
       {"proof.csv",
        [&]() {
-         return output.history && !result.solve.minimum.proof_history.empty();
+         return output.history &&
+                !result.solution.minimum.proof_history.empty();
        },
        [&](const std::string &path) {
-         write_history(result.solve.minimum.proof_history, path);
+         write_history(result.solution.minimum.proof_history, path);
        }}};
     files.insert(files.end(), others.begin(), others.end());
     return files;

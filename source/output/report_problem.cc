@@ -146,11 +146,12 @@ namespace Debond
 
   template <int dim>
   void
-  report_problem(const Scene<dim>   &scene,
-                 const MethodChoice &choice,
-                 const double        bundle_weight,
-                 Record             &record)
+  report_problem(const Answer<dim> &begun,
+                 const double       bundle_weight,
+                 Record            &record)
   {
+    const Scene<dim>        &scene   = *begun.scene;
+    const MethodChoice      &choice  = begun.choice;
     const ProblemParameters &problem = scene.parameters();
     report_program(record);
     record.heading("Problem");
@@ -205,6 +206,11 @@ namespace Debond
       record.line("held by contact",
                   join(motions, ", "),
                   ", by bonds and the foundation alone");
+    std::vector<std::string> reasons;
+    if (!choice.reason.empty())
+      reasons.push_back(choice.reason);
+    if (!choice.reason_for_multigrid.empty())
+      reasons.push_back("by multigrid, since " + choice.reason_for_multigrid);
     record.line("method",
                 to_string(choice.method),
                 choice.linear_solver != LinearSolver::none ?
@@ -213,7 +219,7 @@ namespace Debond
                 choice.method == SolverMethod::euclidean_bundle ?
                   words(", u_k = ", bundle_weight) :
                   "",
-                choice.reason.empty() ? "" : ", chosen since " + choice.reason);
+                reasons.empty() ? "" : ", chosen since " + join(reasons, "; "));
   }
 
 
@@ -254,7 +260,6 @@ namespace Debond
   template <int dim>
   void
   report_cost(const RunResult<dim> &result,
-              const MethodChoice   &choice,
               const double          peak_memory,
               Record               &record)
   {
@@ -264,7 +269,7 @@ namespace Debond
     };
     if (record.has_details())
       record.heading("Wall time in s");
-    const auto &solve_parts = result.solve.parts;
+    const auto &solve_parts = result.solution.parts;
     for (const auto &[part, seconds] : result.times)
       {
         record.add("/timings_s/" + part, seconds);
@@ -276,7 +281,7 @@ namespace Debond
     record.add("/timings_s/solve_parts",
                solve_parts.empty() ? Record::Json::object() :
                                      Record::Json(solve_parts));
-    record.add({{"memory_estimate_bytes", choice.memory},
+    record.add({{"memory_estimate_bytes", result.choice.memory},
                 {"peak_memory_bytes", peak_memory}});
     if (record.has_details())
       {
@@ -284,7 +289,7 @@ namespace Debond
         record.line("peak",
                     fixed_point(peak_memory / 1e6, 0),
                     ", estimated ",
-                    fixed_point(choice.memory / 1e6, 0));
+                    fixed_point(result.choice.memory / 1e6, 0));
       }
   }
 

@@ -65,9 +65,10 @@ namespace Debond
     void
     report_status(const RunResult<dim> &result, Record &record)
     {
-      const SolveResult &solve = result.solve;
-      record.heading(result.path.empty() ? "Result" :
-                                           "Result at the last load factor");
+      const Solution &solve = result.solution;
+      record.heading(result.path.steps.empty() ?
+                       "Result" :
+                       "Result at the last load factor");
       record.add({{"status", result.status},
                   {"message", result.message},
                   {"notes", result.notes},
@@ -200,7 +201,7 @@ namespace Debond
 
 
     void
-    report_iterations(const SolveResult &result,
+    report_iterations(const Solution    &result,
                       const SolverMethod method,
                       Record            &record)
     {
@@ -305,9 +306,9 @@ namespace Debond
       record.add("/mean_displacements", Json::object());
       for (const auto &[name, vector] : result.means)
         report_vector("/mean_displacements/" + name, "", vector, record);
-      if (!result.path.empty())
+      if (!result.path.steps.empty())
         record.add("/dissipated_energy",
-                   result.path.back().state.dissipated_energy);
+                   result.path.steps.back().state.dissipated_energy);
     }
 
 
@@ -550,7 +551,7 @@ namespace Debond
                      Record                   &record)
     {
       const std::vector<ContactNodeState> &nodes = result.verification.nodes;
-      report_totals(load_path_totals(result.path,
+      report_totals(load_path_totals(result.path.steps,
                                      static_cast<unsigned int>(
                                        load_path.factors.size())),
                     std::any_of(nodes.begin(),
@@ -558,13 +559,13 @@ namespace Debond
                                 [](const ContactNodeState &node) {
                                   return node.branch != BondState::free;
                                 }),
-                    result.solve.comes_off_at,
+                    result.solution.comes_off_at,
                     load_path,
                     record);
       report_arc(result.arc, load_path, record);
 
       double size = 0.;
-      for (const LoadPathStep<dim> &step : result.path)
+      for (const LoadPathStep<dim> &step : result.path.steps)
         size = std::max(size, step.state.cell_size_at_edge);
       record.add("/load_path/cell_size_at_edge", size);
     }
@@ -574,14 +575,12 @@ namespace Debond
 
   template <int dim>
   void
-  report_result(const Scene<dim>     &scene,
-                const MethodChoice   &choice,
-                const RunResult<dim> &result,
-                Record               &record)
+  report_result(const RunResult<dim> &result, Record &record)
   {
-    if (!result.path.empty())
+    const Scene<dim> &scene = *result.scene;
+    if (!result.path.steps.empty())
       report_load_path(scene.parameters().load_path, result, record);
-    if (!result.levels.empty())
+    if (!result.meshes.levels.empty())
       {
         // Of the first mesh before.
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
@@ -596,12 +595,12 @@ namespace Debond
       report_coming_off(*result.coming_off, record);
     if (result.estimate)
       report_estimate(*result.estimate, record);
-    report_minimum(result.solve.minimum,
+    report_minimum(result.solution.minimum,
                    result.is_success(),
                    static_cast<unsigned int>(
                      scene.contact_boundary().nodes.size()),
                    record);
-    report_iterations(result.solve, choice.method, record);
+    report_iterations(result.solution, result.choice.method, record);
     if (!result.has_displacement())
       return;
     report_state(result.verification, result.largest, record);

@@ -52,17 +52,18 @@ namespace Debond
     std::string
     verification_message(const double tolerance, const RunResult<dim> &result)
     {
-      for (const LoadPathStep<dim> &step : result.path)
+      for (const LoadPathStep<dim> &step : result.path.steps)
         if (!step.message.empty())
           return step.message;
       if (!(result.verification.error() <= tolerance))
         return result.verification.failure(
           tolerance,
-          result.solve.linear_iterations > 0 ||
-            !result.solve.bundle_history.empty());
+          result.solution.linear_iterations > 0 ||
+            !result.solution.bundle_history.empty());
       // The paper's stop tolerance is an energy that the user has chosen. If it
       // is too large for the scene, v_k shows how much J may still fall.
-      if (const std::optional<double> &descent = result.solve.relative_descent;
+      if (const std::optional<double> &descent =
+            result.solution.relative_descent;
           descent && !(*descent <= Tolerance::descent))
         {
           std::ostringstream text;
@@ -81,11 +82,10 @@ namespace Debond
     /// refinement say of it.
     template <int dim>
     void
-    judge(const std::string &failure,
-          const std::string &shortfall,
-          RunResult<dim>    &result)
+    judge(const std::string &failure, RunResult<dim> &result)
     {
-      SolveResult &solve = result.solve;
+      Solution          &solve     = result.solution;
+      const std::string &shortfall = result.meshes.shortfall;
       // A solver that stopped at rounding cannot tell what its point is worth,
       // but the verification can, from forces of stresses that share nothing
       // with the solver.
@@ -156,25 +156,25 @@ namespace Debond
     /// them.
     template <int dim>
     void
-    estimate(const Scene<dim>            &scene,
-             const AdhesionIntegral<dim> &bonds,
-             RunResult<dim>              &result)
+    estimate(RunResult<dim> &result)
     {
+      const Scene<dim> &scene = *result.scene;
       try
         {
-          result.estimate = estimate_error(scene.estimated(bonds),
-                                           result.solve.u,
-                                           result.solve.functional,
-                                           result.solve.load_factor,
-                                           result.levels.empty() ?
-                                             std::nullopt :
-                                             result.levels.back().error_factor);
+          result.estimate =
+            estimate_error(scene.estimated(result.bonds()),
+                           result.solution.u,
+                           result.solution.functional,
+                           result.solution.load_factor,
+                           result.meshes.levels.empty() ?
+                             std::nullopt :
+                             result.meshes.levels.back().error_factor);
           if (result.estimate->relative() > largest_mesh_error)
             result.notes.push_back(
               "the mesh is too coarse for J: see error of the mesh");
           const double factor = result.estimate->factor.value_or(1.);
           if (factor > reliable_factor &&
-              !result.levels.rbegin()[1].error_factor)
+              !result.meshes.levels.rbegin()[1].error_factor)
             {
               std::ostringstream note;
               note << "two meshes alone have measured the error, so that it "
@@ -184,7 +184,7 @@ namespace Debond
                       "Accuracy/Maximum unknowns, tells more";
               result.notes.push_back(note.str());
             }
-          if ((!result.levels.empty() ||
+          if ((!result.meshes.levels.empty() ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))
             result.notes.push_back(
@@ -209,9 +209,10 @@ namespace Debond
     /// is wrong if there is none.
     template <int dim>
     std::string
-    check_coming_off(const Scene<dim> &scene, RunResult<dim> &result)
+    check_coming_off(RunResult<dim> &result)
     {
-      if (result.solve.status != SolverStatus::comes_off)
+      const Scene<dim> &scene = *result.scene;
+      if (result.solution.status != SolverStatus::comes_off)
         return "";
       // The solver's word alone does not count: a rigid motion away from the
       // foundation along which the loads do work is the proof that J has no
@@ -219,7 +220,7 @@ namespace Debond
       result.coming_off =
         coming_off(scene.problem(),
                    scene.adhesion(),
-                   result.solve.comes_off_at.value_or(1.).loads);
+                   result.solution.comes_off_at.value_or(1.).loads);
       return result.coming_off ?
                "" :
                "the solver says that the body comes off, but no rigid motion "
@@ -233,19 +234,18 @@ namespace Debond
     /// What is odd in a scene that has been solved.
     template <int dim>
     void
-    add_notes(const Scene<dim>            &scene,
-              const AdhesionIntegral<dim> &bonds,
-              const bool                   is_loaded,
-              RunResult<dim>              &result)
+    add_notes(const bool is_loaded, RunResult<dim> &result)
     {
+      const Scene<dim> &scene = *result.scene;
       if (!is_loaded)
         result.notes.push_back("the scene has no load");
       else if (scene.problem()
                    .fields()
-                   .applied_nodal_forces(result.solve.load_factor)
+                   .applied_nodal_forces(result.solution.load_factor)
                    .linfty_norm() > 0. &&
-               scene.problem().load(result.solve.load_factor).linfty_norm() ==
-                 0.)
+               scene.problem()
+                   .load(result.solution.load_factor)
+                   .linfty_norm() == 0.)
         result.notes.push_back(
           "all loads act where the body cannot move: on supports, or along a "
           "contact boundary with Contact law/Tangential displacement = fixed");
@@ -254,14 +254,14 @@ namespace Debond
                  scene.problem().unknowns().dof_handler().get_triangulation(),
                  result.verification.nodes),
                result.notes);
-      append(sliding_notes(bonds,
+      append(sliding_notes(result.bonds(),
                            result.verification,
                            !scene.body().cuts.empty(),
                            scene.supports().normals.empty() &&
                              is_curved(scene.contact_boundary())),
              result.notes);
       double cell_size_at_edge = 0.;
-      for (const LoadPathStep<dim> &step : result.path)
+      for (const LoadPathStep<dim> &step : result.path.steps)
         cell_size_at_edge =
           std::max(cell_size_at_edge, step.state.cell_size_at_edge);
       append(plausibility_notes(result.largest,
@@ -278,48 +278,48 @@ namespace Debond
   void
   check_result(const VerificationParameters   &verification,
                const std::vector<std::string> &notes,
-               const Scene<dim>               &scene,
-               const AdhesionIntegral<dim>    &bonds,
-               const std::string              &shortfall,
                RunResult<dim>                 &result)
   {
-    result.notes = result.solve.notes;
-    append(result.solve.minimum.notes, result.notes);
+    const Scene<dim>  &scene     = *result.scene;
+    const std::string &shortfall = result.meshes.shortfall;
+    result.notes                 = result.solution.notes;
+    append(result.solution.minimum.notes, result.notes);
     append(notes, result.notes);
     append(scene.notes(), result.notes);
-    const std::string not_off = check_coming_off(scene, result);
-    if (result.solve.status == SolverStatus::comes_off && result.path.empty())
+    const std::string not_off = check_coming_off(result);
+    if (result.solution.status == SolverStatus::comes_off &&
+        result.path.steps.empty())
       {
-        judge(not_off, "", result);
+        judge(not_off, result);
         return;
       }
 
-    if (result.solve.status == SolverStatus::quadratic_program &&
+    if (result.solution.status == SolverStatus::quadratic_program &&
         !scene.problem().unknowns().is_held_by_supports())
-      result.solve.message +=
+      result.solution.message +=
         " Only its contact holds the body: where the bonds are softer than "
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
     result.verification = verify(scene.problem(),
-                                 bonds,
-                                 result.solve.u,
-                                 result.solve.load_factor,
+                                 result.bonds(),
+                                 result.solution.u,
+                                 result.solution.load_factor,
                                  scene.least_force());
     const auto values   = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
-                           result.solve.u,
-                           result.solve.load_factor);
+                           result.solution.u,
+                           result.solution.load_factor);
     };
-    result.probes = values(scene.probes());
-    result.means  = values(scene.means());
-    result.largest =
-      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
+    result.probes  = values(scene.probes());
+    result.means   = values(scene.means());
+    result.largest = largest_values(scene.problem(),
+                                    result.solution.u,
+                                    result.solution.load_factor);
     result.times.emplace_back("verification", timer.wall_time());
     judge(not_off.empty() ?
             verification_message(verification.tolerance, result) :
             not_off,
-          shortfall,
           result);
 
     const bool is_loaded = has_load(scene, result.largest.displacement);
@@ -329,19 +329,19 @@ namespace Debond
     // interrupted.
     const bool is_solution =
       result.is_success() || !shortfall.empty() ||
-      (result.solve.status == SolverStatus::interrupted &&
-       !result.levels.empty());
+      (result.solution.status == SolverStatus::interrupted &&
+       !result.meshes.levels.empty());
     // At rest all of u is rounding, of which there is no error.
     if (is_solution && is_loaded)
       {
         timer.restart();
-        estimate(scene, bonds, result);
+        estimate(result);
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    add_notes(scene, bonds, is_loaded, result);
+    add_notes(is_loaded, result);
     result.displacement_error =
-      error_of(verification.exact_displacement, scene, result.solve.u);
+      error_of(verification.exact_displacement, scene, result.solution.u);
   }
 
 

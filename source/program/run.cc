@@ -8,7 +8,9 @@
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
 #include <debond/program/run_output.h>
+#include <debond/solve/meshes/adaptive_loop.h>
 #include <debond/solve/minimum/displacement.h>
+#include <debond/solve/minimum/solve.h>
 
 #include <filesystem>
 
@@ -16,20 +18,6 @@ namespace Debond
 {
   namespace
   {
-    /// What a run has found, on which mesh and how, or before the end what it
-    /// goes on from. The state has the meshes that are done, why the last one
-    /// is short of its target, and what a later run would go on from.
-    template <int dim>
-    struct Answer
-    {
-      std::shared_ptr<const Scene<dim>> scene;
-      MethodChoice                      choice; ///< on this mesh
-      FollowedPath<dim>                 path;   ///< one load: without steps
-      RunState<dim>                     state;
-    };
-
-
-
     /// What an earlier run of the scene has left in the directory, if there was
     /// one. Throws BadInput if it does not belong to the scene.
     template <int dim>
@@ -71,24 +59,21 @@ namespace Debond
     {
       Answer<dim> begun;
       // First of all, since it refuses what would not fit into memory.
-      begun.choice      = choose_method(parameters, parameters.solver);
-      begun.scene       = make_first_scene<dim>(parameters,
+      begun.choice = choose_method(parameters, parameters.solver);
+      begun.scene  = make_first_scene<dim>(parameters,
                                           parameters.accuracy,
                                           parameters.solver.start,
                                           earlier.meshes.divisions);
-      begun.state       = earlier;
-      begun.state.scene = parameters.effective_scene;
-      begun.state.mesh  = mesh_checksum(*begun.scene);
-      if (earlier.mesh != 0 && earlier.mesh != begun.state.mesh)
+      begun.meshes = earlier.meshes;
+      begun.path   = earlier.path;
+      if (earlier.mesh != 0 && earlier.mesh != mesh_checksum(*begun.scene))
         throw BadInput({state_file(parameters.output.directory) +
                         " is of another mesh; run without --restart"});
       // Displacements in the file have the order of one rank, here they get
       // that of these ranks.
-      for (DofVector *const u :
-           {&begun.state.meshes.start, &begun.state.path.u})
+      for (DofVector *const u : {&begun.meshes.start, &begun.path.u})
         if (u->size() > 0)
           *u = from_serial_order(begun.scene->problem().unknowns(), *u);
-      begun.path.progress = begun.state.path;
       choose_linear_solver(*begun.scene, parameters.solver, begun.choice);
       check_supports_of_method(begun.choice, parameters.solver, *begun.scene);
       check_exact_displacement(parameters.verification.exact_displacement,
@@ -109,79 +94,93 @@ namespace Debond
       RunOutput<dim>   &output;
       Record           &record;
 
-      /// The minimum on one mesh.
+      /// All that the scene asks for. A load path on refined meshes has its
+      /// global branch and its arc yet to come when the last mesh is done.
       Answer<dim>
-      minimise(Answer<dim> answer) const
+      solve(Answer<dim> begun, RefinementGoal<dim> *const goal) const
       {
-        const DofVector &start = answer.state.meshes.start;
-        answer.path.result     = Debond::solve(answer.choice,
-                                           parameters.solver,
-                                           *answer.scene,
-                                           log(),
-                                           options.terminal,
-                                           start.size() > 0 ? &start : nullptr);
-        // A signal leaves the last iterate in the state, from which --restart
-        // goes on.
-        const SolveResult &found = answer.path.result;
-        if (found.u.size() > 0 && (found.status == SolverStatus::interrupted ||
-                                   found.minimum.interrupted))
+        Answer<dim> answer = std::move(begun);
+        if (parameters.accuracy.is_adaptive())
           {
-            answer.state.meshes.start = found.u;
-            output.save(answer.state, *answer.scene);
+            answer = refine(std::move(answer), goal);
+            if (parameters.load_path.factors.empty() ||
+                answer.solution.status == SolverStatus::interrupted)
+              return answer;
+          }
+        return solve_on_last_mesh(std::move(answer));
+      }
+
+    private:
+      Answer<dim>
+      solve_on_last_mesh(Answer<dim> begun) const
+      {
+        output.begin_path(*begun.scene, begun.path.steps);
+        Answer<dim> answer =
+          solve_on_mesh<dim>(parameters.load_path,
+                             settings(),
+                             std::move(begun),
+                             [this](const Answer<dim>       &state,
+                                    const Verification<dim> &verification) {
+                               output.add(state.path, verification);
+                               // A step that went wrong is not saved, so that a
+                               // restart tries it again.
+                               if (state.path.steps.back().message.empty())
+                                 output.save(state);
+                             },
+                             {record.has_details() ? &out : nullptr,
+                              options.terminal});
+        // A signal leaves the last iterate in the state, from which --restart
+        // continues.
+        const Solution &found = answer.solution;
+        if (answer.path.steps.empty() && found.u.size() > 0 &&
+            (found.status == SolverStatus::interrupted ||
+             found.minimum.interrupted))
+          {
+            answer.meshes.start = found.u;
+            output.save(answer);
           }
         return answer;
       }
 
       /// The minimum, or the states of the load path, on meshes that are
-      /// refined until their error is small enough.
+      /// refined until their error is small enough. Each mesh is reported when
+      /// it is done, and its state saved before the next one is solved, so that
+      /// a run that ends there begins again with that mesh.
       Answer<dim>
-      refine(Answer<dim> answer, RefinementGoal<dim> *const goal) const
+      refine(Answer<dim> begun, RefinementGoal<dim> *const goal) const
       {
-        // Each mesh is reported when it is done, and its state saved before the
-        // next one is solved, so that a run that ends there begins again with
-        // that mesh.
         AdaptiveObserver<dim> observer;
-        observer.level_is_done = [&](const unsigned int   number,
-                                     const AdaptiveLevel &level) {
+        observer.level_is_done = [this](const unsigned int   number,
+                                        const AdaptiveLevel &level) {
           report_level(number, level, record);
           record.print(out);
         };
-        observer.next_mesh_is_made = [&](const AdaptiveProgress &progress,
-                                         const Scene<dim>       &next) {
-          answer.state.mesh   = mesh_checksum(next);
-          answer.state.meshes = progress;
-          output.save(answer.state, next);
-          output.begin_mesh(next);
+        observer.next_mesh_is_made = [this](const Answer<dim> &next) {
+          output.save(next);
+          output.begin_mesh(*next.scene);
         };
-        observer.step_is_done = [&](const PathProgress<dim> &progress,
-                                    const Verification<dim> &verification,
-                                    const AdhesionIntegral<dim> &) {
-          output.add(progress, verification);
+        observer.step_is_done = [this](const Answer<dim>       &state,
+                                       const Verification<dim> &verification) {
+          output.add(state.path, verification);
         };
         // A path that has begun stays on its mesh.
-        if (answer.state.has_last_mesh)
+        if (begun.meshes.is_last)
           {
-            const auto &levels = answer.state.meshes.levels;
-            for (unsigned int k = 0; k < levels.size(); ++k)
-              observer.level_is_done(k, levels[k]);
-            return answer;
+            for (unsigned int k = 0; k < begun.meshes.levels.size(); ++k)
+              observer.level_is_done(k, begun.meshes.levels[k]);
+            return begun;
           }
         try
           {
-            AdaptiveResult<dim> adaptive =
-              solve_adaptively(settings(answer.choice),
-                               parameters.accuracy,
-                               goal,
-                               answer.state.meshes,
-                               observer,
-                               std::move(answer.scene));
-            answer.scene               = adaptive.scene;
-            answer.choice              = adaptive.choice;
-            answer.path                = std::move(adaptive.path);
-            answer.state.meshes.levels = std::move(adaptive.levels);
-            answer.state.shortfall     = adaptive.shortfall;
-            // From here on a restart stays on this mesh.
-            answer.state.has_last_mesh = true;
+            Answer<dim> answer = solve_adaptively(settings(),
+                                                  parameters.accuracy,
+                                                  goal,
+                                                  observer,
+                                                  std::move(begun));
+            // The steps are of the mesh that was interrupted.
+            if (answer.solution.status == SolverStatus::interrupted)
+              output.begin_mesh(*answer.scene);
+            return answer;
           }
         catch (const BadInput &)
           {
@@ -191,64 +190,12 @@ namespace Debond
             output.withdraw();
             throw;
           }
-        // The steps are of the mesh that was interrupted.
-        if (answer.path.result.status == SolverStatus::interrupted)
-          output.begin_mesh(*answer.scene);
-        return answer;
       }
 
-      /// The states of the load path; of a refined mesh the global branch and
-      /// the arc are left to do.
-      Answer<dim>
-      follow(Answer<dim> answer) const
-      {
-        output.begin_path(*answer.scene, answer.path.progress.steps);
-        answer.path = follow_load_path<dim>(
-          parameters.load_path,
-          settings(answer.choice),
-          *answer.scene,
-          answer.path,
-          [&](const PathProgress<dim> &progress,
-              const Verification<dim> &verification,
-              const AdhesionIntegral<dim> &) {
-            output.add(progress, verification);
-            // A step that went wrong is not saved, so that a restart tries it
-            // again.
-            if (!progress.steps.back().message.empty())
-              return;
-            answer.state.path = progress;
-            output.save(answer.state, *answer.scene);
-          },
-          log());
-        return answer;
-      }
-
-      /// All that the scene asks for.
-      Answer<dim>
-      solve(Answer<dim> begun, RefinementGoal<dim> *const goal) const
-      {
-        const bool  has_path = !parameters.load_path.factors.empty();
-        Answer<dim> answer   = parameters.accuracy.is_adaptive() ?
-                                 refine(std::move(begun), goal) :
-                               has_path ? std::move(begun) :
-                                          minimise(std::move(begun));
-        if (has_path && answer.path.result.status != SolverStatus::interrupted)
-          return follow(std::move(answer));
-        return answer;
-      }
-
-    private:
       SolveSettings
-      settings(const MethodChoice &choice) const
+      settings() const
       {
-        return {choice, parameters.solver, parameters.verification.tolerance};
-      }
-
-      /// For the iterations; null if there is none.
-      std::ostream *
-      log() const
-      {
-        return record.has_details() ? &out : nullptr;
+        return {parameters.solver, parameters.verification.tolerance};
       }
     };
 
@@ -259,7 +206,7 @@ namespace Debond
     ExitCode
     conclude(const RunResult<dim> &result, const std::string &output_error)
     {
-      const bool interrupted = result.solve.minimum.interrupted;
+      const bool interrupted = result.solution.minimum.interrupted;
       const auto print       = [](const std::string &message) {
         if (is_first_rank())
           print_error(message);
@@ -267,11 +214,12 @@ namespace Debond
       // In the order of what the user has to know first: no answer, a search
       // that was cut short, files that are missing.
       if (!result.is_answer())
-        print("NOT CONVERGED (" + result.status + "): " + result.message +
-              (result.solve.status == SolverStatus::interrupted &&
-                   (!result.path.empty() || !result.levels.empty()) ?
-                 "; --restart goes on from what is done" :
-                 ""));
+        print(
+          "NOT CONVERGED (" + result.status + "): " + result.message +
+          (result.solution.status == SolverStatus::interrupted &&
+               (!result.path.steps.empty() || !result.meshes.levels.empty()) ?
+             "; --restart goes on from what is done" :
+             ""));
       else if (interrupted)
         print("the search or the proof was interrupted; the result is what "
               "it had found");
@@ -280,7 +228,7 @@ namespace Debond
           print(output_error);
           return ExitCode::output_not_saved;
         }
-      if (result.solve.status == SolverStatus::interrupted ||
+      if (result.solution.status == SolverStatus::interrupted ||
           (result.is_success() && interrupted))
         return ExitCode::interrupted;
       return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
@@ -309,18 +257,18 @@ namespace Debond
     dealii::Timer       total, timer;
     const RunState<dim> earlier =
       options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
-    Answer<dim>    answer = begin(parameters, earlier);
+    Answer<dim>    begun = begin(parameters, earlier);
     RunResult<dim> result;
-    result.times = {{"mesh", answer.scene->mesh_seconds()},
-                    {"assembly", answer.scene->assembly_seconds()}};
+    result.times = {{"mesh", begun.scene->mesh_seconds()},
+                    {"assembly", begun.scene->assembly_seconds()}};
     const std::unique_ptr<RunCompanion<dim>> after =
-      companion.begin(parameters.solver, answer.scene);
+      companion.begin(parameters.solver, begun.scene);
 
     std::optional<RunOutput<dim>> output;
     try
       {
         output.emplace(parameters,
-                       *answer.scene,
+                       *begun.scene,
                        *after,
                        options.restart ? &earlier : nullptr);
       }
@@ -331,45 +279,29 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
     Record record(parameters.output.machine_details);
-    report_problem(*answer.scene,
-                   answer.choice,
-                   parameters.solver.bundle.u,
-                   record);
+    report_problem(begun, parameters.solver.bundle.u, record);
     if (n_started_ranks() > 1 && record.has_details())
       record.line("ranks", std::to_string(n_started_ranks()));
     record.print(out);
 
     timer.restart();
-    answer = Run<dim>{parameters, options, out, *output, record}.solve(
-      std::move(answer), after->goal());
+    static_cast<Answer<dim> &>(result) =
+      Run<dim>{parameters, options, out, *output, record}.solve(
+        std::move(begun), after->goal());
     result.times.emplace_back("solve", timer.wall_time());
-    result.solve  = answer.path.result;
-    result.levels = answer.state.meshes.levels;
-    result.path   = answer.path.progress.steps;
-    result.arc    = answer.path.arc;
-
-    const Scene<dim> &scene = *answer.scene;
-    check_result(parameters.verification,
-                 parameters.notes,
-                 scene,
-                 answer.path.bonds ? *answer.path.bonds : scene.adhesion(),
-                 answer.state.shortfall,
-                 result);
-    after->after(answer.scene, result);
-    report_result(scene, answer.choice, result, record);
+    check_result(parameters.verification, parameters.notes, result);
+    after->after(result);
+    report_result(result, record);
     after->report(record);
 
     // The summary comes last and names the cost of all that was written before,
     // so that whoever finds it knows the run to be complete.
     timer.restart();
-    if (output->write(scene, result))
+    if (output->write(result))
       {
         result.times.emplace_back("output", timer.wall_time());
         result.times.emplace_back("total", total.wall_time());
-        report_cost(result,
-                    answer.choice,
-                    -least_of_ranks(-peak_memory()),
-                    record);
+        report_cost(result, -least_of_ranks(-peak_memory()), record);
         output->write_summary(record);
       }
     report_files(output->files_written(), record);

@@ -23,7 +23,8 @@ namespace Debond
                             const Scene<dim>        &scene,
                             const RunCompanion<dim> &companion,
                             const RunState<dim>     *begun)
-    : output(parameters.output)
+    : effective_scene(parameters.effective_scene)
+    , output(parameters.output)
     , companion(companion)
   {
     on_all_ranks(scene.ranks(), [this]() {
@@ -41,9 +42,8 @@ namespace Debond
     if (begun == nullptr)
       remove_files({{"restart.state", {}, {}}}, output.directory);
     written.push_back(path("parameters.prm"));
-    write_atomically(written.back(), [&](std::ostream &file) {
-      file << parameters.effective_scene;
-    });
+    write_atomically(written.back(),
+                     [&](std::ostream &file) { file << effective_scene; });
   }
 
 
@@ -72,22 +72,26 @@ namespace Debond
 
   template <int dim>
   void
-  RunOutput<dim>::add(const PathProgress<dim> &progress,
+  RunOutput<dim>::add(const PathProgress<dim> &path,
                       const Verification<dim> &verification)
   {
-    path_output->add(progress.steps.back(), progress.u, verification);
+    path_output->add(path.steps.back(), path.u, verification);
   }
 
 
 
   template <int dim>
   void
-  RunOutput<dim>::save(RunState<dim> state, const Scene<dim> &scene)
+  RunOutput<dim>::save(const Answer<dim> &answer)
   {
-    // Of any number of ranks.
+    RunState<dim> state = {effective_scene,
+                           mesh_checksum(*answer.scene),
+                           answer.meshes,
+                           answer.path};
+    // Displacements in the file have the order of one rank.
     for (DofVector *const u : {&state.meshes.start, &state.path.u})
       if (u->size() > 0)
-        *u = in_serial_order(scene.problem().unknowns(), *u);
+        *u = in_serial_order(answer.scene->problem().unknowns(), *u);
     attempt([&]() {
       write_state(state, state_file(output.directory));
       has_state = true;
@@ -112,10 +116,11 @@ namespace Debond
 
   template <int dim>
   bool
-  RunOutput<dim>::write(const Scene<dim> &scene, const RunResult<dim> &result)
+  RunOutput<dim>::write(const RunResult<dim> &result)
   {
     return attempt([&]() {
-      append(write_files(files(scene, result), output.directory), written);
+      append(write_files(files(*result.scene, result), output.directory),
+             written);
     });
   }
 
@@ -159,7 +164,7 @@ namespace Debond
   RunOutput<dim>::files(const Scene<dim> &scene, const RunResult<dim> &result)
   {
     std::vector<OutputFile> all = output_files(output, scene, result);
-    append(path_output->files(result.path, result.arc), all);
+    append(path_output->files(result.path.steps, result.arc), all);
     append(companion.files(output, scene), all);
     return all;
   }

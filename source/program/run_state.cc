@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 5, checksum " +
+      return "Debond run state 6, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -128,8 +128,8 @@ namespace Debond
     exchange(Archive &archive, RunState<dim> &state)
     {
       BondMemory &memory = state.path.memory;
-      archive &state.scene &state.mesh &state.meshes.divisions &state
-        .has_last_mesh &state.shortfall &state.path.kinds &memory
+      archive &state.scene &state.mesh &state.meshes.divisions &state.meshes
+        .is_last &state.meshes.shortfall &state.path.kinds &memory
         .reached &memory.toughness &memory.mixity &memory.taken &memory
         .lag &state.meshes.start &state.path.u;
       exchange(archive, state.meshes.levels);

@@ -347,7 +347,7 @@ namespace
         const auto certify = [&](const CertificateKind kind,
                                  const auto           &of,
                                  const Certificate    *earlier) {
-          const SolveResult result = solved(parameters, *of);
+          const Solution result = solved(parameters, *of);
           if (!can_be_verified(result.status))
             throw Unsolved();
           return Certifier<dim>(kind, of).certify(result.u,
@@ -369,7 +369,7 @@ namespace
           {
             const Parameters fine_parameters = parameters_of(
               random.values + random.fine + Values{"Mesh/Degree=2"});
-            const SolveResult fine =
+            const Solution fine =
               solved(fine_parameters, Scene<dim>(fine_parameters));
             if (!can_be_verified(fine.status))
               throw Unsolved();
@@ -404,7 +404,7 @@ namespace
   {
     const Parameters parameters = parameters_of(values + Values{"Dimension=3"});
     const auto       scene      = std::make_shared<const Scene<3>>(parameters);
-    const SolveResult result    = solved(parameters, *scene);
+    const Solution   result     = solved(parameters, *scene);
     return Certifier<3>(CertificateKind::fixed_state, scene)
       .certify(result.u, parameters.solver.proof, Interruption::by_signal());
   }

@@ -18,7 +18,7 @@ namespace
   {
     BundleIteration iteration = {
       0, -5.7774619650983e-4, -1.25e-8, 1., 1., 0, 0, StepKind::short_step};
-    Progress log(&std::cout);
+    Progress log({&std::cout});
     for (unsigned int k = 1; k <= 23; ++k)
       {
         iteration.iteration   = k;
@@ -30,7 +30,7 @@ namespace
 
     section("Progress on a terminal");
     std::ostringstream screen;
-    Progress           terminal(&screen, true);
+    Progress           terminal({&screen, true});
     for (unsigned int k = 1; k <= 1000; ++k)
       {
         iteration.iteration = k;
@@ -45,7 +45,7 @@ namespace
             text.back() == '\n' && text.rfind("1000 ") > text.rfind('\r'));
 
     std::ostringstream silent;
-    Progress(&silent, true).finish();
+    Progress({&silent, true}).finish();
     check("nothing is printed without an iteration", silent.str().empty());
   }
 } // namespace

@@ -33,7 +33,7 @@ namespace Debond
     /// that for their branches as they are is narrow enough, or @p is_last.
     GoalOnMesh
     look(const std::shared_ptr<const Scene<dim>> &scene,
-         const SolveResult                       &result,
+         const Solution                          &result,
          const bool                               is_last) override;
 
     double
@@ -42,8 +42,7 @@ namespace Debond
     /// Makes that of a success on the last mesh, unless it has one as a goal. A
     /// note of @p result says why there is none.
     void
-    after(const std::shared_ptr<const Scene<dim>> &scene,
-          RunResult<dim>                          &result) override;
+    after(RunResult<dim> &result) override;
 
     void
     report(Record &record) const override;
@@ -59,7 +58,7 @@ namespace Debond
     void
     make(const CertificateKind                    kind_of_this,
          const std::shared_ptr<const Scene<dim>> &scene,
-         const SolveResult                       &result);
+         const Solution                          &result);
 
     const CertificateKind          kind;
     const double                   target;

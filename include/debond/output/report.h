@@ -11,10 +11,9 @@ namespace Debond
   /// being the u_k of the Euclidean one.
   template <int dim>
   void
-  report_problem(const Scene<dim>   &scene,
-                 const MethodChoice &choice,
-                 const double        bundle_weight,
-                 Record             &record);
+  report_problem(const Answer<dim> &begun,
+                 const double       bundle_weight,
+                 Record            &record);
 
   /// Reports a mesh of a loop that refines, as the @p number-th one, when it is
   /// done.
@@ -26,16 +25,12 @@ namespace Debond
   /// Reports status, result, that of a load path as well, and verification.
   template <int dim>
   void
-  report_result(const Scene<dim>     &scene,
-                const MethodChoice   &choice,
-                const RunResult<dim> &result,
-                Record               &record);
+  report_result(const RunResult<dim> &result, Record &record);
 
   /// Reports times and memory, @p peak_memory in bytes.
   template <int dim>
   void
   report_cost(const RunResult<dim> &result,
-              const MethodChoice   &choice,
               const double          peak_memory,
               Record               &record);
 

@@ -6,13 +6,13 @@
 #include <debond/check/displacement_error.h>
 #include <debond/check/plausibility.h>
 #include <debond/output/vtu.h>
-#include <debond/solve/meshes/adaptive_loop.h>
+#include <debond/solve/answer.h>
 
 namespace Debond
 {
-  /// The result of a run, for its log and its files.
+  /// The answer to a scene and what was checked of it, for log and files.
   template <int dim>
-  struct RunResult
+  struct RunResult : Answer<dim>
   {
     /// The judgement of the solver and of the verification, in words.
     std::string status;
@@ -21,7 +21,6 @@ namespace Debond
     /// Notes on what did not go as it should, and did not decide on the status.
     std::vector<std::string> notes;
 
-    SolveResult       solve;
     Verification<dim> verification;
     LargestValues     largest;
     ProbeValues<dim>  probes;
@@ -33,19 +32,11 @@ namespace Debond
     /// There is one if the solver says that the body comes off, and it does.
     std::optional<ComingOff<dim>> coming_off;
 
-    /// The meshes, if the mesh was refined; all the rest is of the last one.
-    std::vector<AdaptiveLevel> levels;
-
     /// There is one if the exact displacement is known.
     std::optional<DisplacementError> displacement_error;
 
     /// More numbers of cells for body.vtu, and of faces for contact.vtu.
     std::vector<CellField> cell_fields, face_fields;
-
-    /// The steps, if the scene has a load path; all the rest is of the last
-    /// one.
-    std::vector<LoadPathStep<dim>> path;
-    std::vector<LoadPathStep<dim>> arc; ///< see follow_load_path()
 
     /// Wall seconds of the parts of the run, in their order.
     std::vector<std::pair<std::string, double>> times;
@@ -75,7 +66,8 @@ namespace Debond
     bool
     has_displacement() const
     {
-      return solve.status != SolverStatus::comes_off || !path.empty();
+      return this->solution.status != SolverStatus::comes_off ||
+             !this->path.steps.empty();
     }
   };
 } // namespace Debond

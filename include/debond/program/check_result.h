@@ -17,18 +17,13 @@ namespace Debond
   /// what else is to be said of the result. Success needs the stop criterion
   /// and the verification. Where rounding kept the method from its stop
   /// criterion, the verification decides; what the method left is said in
-  /// either case. @p notes: on the scene; @p bonds are as the load path has
-  /// left them. Ranks that share the scene call it together, and the first one
-  /// has the result.
+  /// either case. @p notes: on the scene. Ranks that share the scene call it
+  /// together, and the first one has the result.
   template <int dim>
   void
   check_result(const VerificationParameters   &verification,
                const std::vector<std::string> &notes,
-               const Scene<dim>               &scene,
-               const AdhesionIntegral<dim>    &bonds,
-               const std::string              &shortfall,
                RunResult<dim>                 &result);
-
 } // namespace Debond
 
 #endif

@@ -23,8 +23,7 @@ namespace Debond
 
     /// Looks at the @p result on the last mesh, to which it may add a note.
     virtual void
-    after(const std::shared_ptr<const Scene<dim>> &scene,
-          RunResult<dim>                          &result) = 0;
+    after(RunResult<dim> &result) = 0;
 
     virtual void
     report(Record &record) const = 0;

@@ -44,12 +44,11 @@ namespace Debond
 
     /// Writes the files of the last step.
     void
-    add(const PathProgress<dim> &progress,
-        const Verification<dim> &verification);
+    add(const PathProgress<dim> &path, const Verification<dim> &verification);
 
-    /// Writes the state of the run, on the mesh of the scene, for --restart.
+    /// Writes what is done, for --restart.
     void
-    save(RunState<dim> state, const Scene<dim> &scene);
+    save(const Answer<dim> &answer);
 
     /// Removes all of this run: its scene turned out to be wrong.
     void
@@ -57,7 +56,7 @@ namespace Debond
 
     /// Writes all files but the summary. Returns false if it cannot.
     bool
-    write(const Scene<dim> &scene, const RunResult<dim> &result);
+    write(const RunResult<dim> &result);
 
     void
     write_summary(const Record &record);
@@ -85,6 +84,7 @@ namespace Debond
     bool
     attempt(const Action &action);
 
+    const std::string                 &effective_scene;
     const OutputParameters            &output;
     const RunCompanion<dim>           &companion;
     std::unique_ptr<DirectoryLock>     lock; ///< of the first rank

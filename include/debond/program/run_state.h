@@ -2,13 +2,13 @@
 #ifndef debond_program_run_state_h
 #define debond_program_run_state_h
 
-#include <debond/solve/meshes/adaptive_loop.h>
+#include <debond/solve/answer.h>
 
 #include <cstdint>
 
 namespace Debond
 {
-  /// How far a run has come, for one on any number of ranks that goes on from
+  /// How far a run has come, for one on any number of ranks that continues from
   /// there.
   template <int dim>
   struct RunState
@@ -19,16 +19,8 @@ namespace Debond
     /// mesh_checksum() of the mesh that displacements are on.
     std::uint64_t mesh = 0;
 
-    /// The mesh, those before it and where to start on it.
-    AdaptiveProgress meshes;
-
-    /// True if no finer mesh follows; then `shortfall` is why the last one does
-    /// not meet its target, empty if it does.
-    bool        has_last_mesh = false;
-    std::string shortfall;
-
-    /// The steps of the load path on that mesh.
-    PathProgress<dim> path;
+    MeshProgress      meshes;
+    PathProgress<dim> path; ///< on the last of them
   };
 
   /// Returns a fingerprint of vertices, cells, boundary and material ids, by

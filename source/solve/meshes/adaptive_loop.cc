@@ -8,6 +8,7 @@
 #include <debond/mesh/bisected_body.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/meshes/adaptive_loop.h>
+#include <debond/solve/minimum/solve.h>
 
 namespace Debond
 {
@@ -35,7 +36,7 @@ namespace Debond
     std::string
     too_large(const ProblemParameters   &problem,
               const AccuracyParameters  &accuracy,
-              const MethodChoice        &wanted,
+              const LinearSolver         wanted,
               const RefinementGoal<dim> *goal,
               const double               limit,
               const Body<dim>           &body)
@@ -94,40 +95,39 @@ namespace Debond
     class AdaptiveLoop
     {
     public:
-      AdaptiveLoop(const SolveSettings              &settings,
-                   const AccuracyParameters         &accuracy,
-                   RefinementGoal<dim>              *goal,
-                   const AdaptiveProgress           &begun,
-                   const AdaptiveObserver<dim>      &observer,
-                   std::shared_ptr<const Scene<dim>> first)
+      AdaptiveLoop(const SolveSettings         &settings,
+                   const AccuracyParameters    &accuracy,
+                   RefinementGoal<dim>         *goal,
+                   const AdaptiveObserver<dim> &observer,
+                   Answer<dim>                  begun)
         : settings(settings)
+        , of_mesh(without_proof(settings.parameters))
         , accuracy(accuracy)
         , goal(goal)
         , observer(observer)
-        , scene(std::move(first))
-        , problem(scene->parameters())
-        , ranks(scene->ranks())
-        , wanted(choose_method(problem, settings.parameters))
-        , progress(begun)
+        , problem(begun.scene->parameters())
+        , ranks(begun.scene->ranks())
+        , answer(std::move(begun))
         , growth(accuracy, dim, problem.degree)
       {
         // The meshes of an interrupted run count as this one's: the observer
         // sees all of them, and the factor of the error is measured with them.
-        for (unsigned int k = 0; k < progress.levels.size(); ++k)
+        for (unsigned int k = 0; k < meshes.levels.size(); ++k)
           {
-            observer.level_is_done(k, progress.levels[k]);
-            growth.add(progress.levels[k]);
+            observer.level_is_done(k, meshes.levels[k]);
+            growth.add(meshes.levels[k]);
           }
       }
 
-      AdaptiveResult<dim>
+      Answer<dim>
       run()
       {
         // Each pass of the loop takes one mesh further: cells are divided where
         // the estimate is large, the scene is evaluated anew, and the state of
         // the mesh before is the start.
-        seconds = scene->mesh_seconds() + scene->assembly_seconds();
-        solve_on(scene, without_proof(settings.choice));
+        seconds =
+          answer.scene->mesh_seconds() + answer.scene->assembly_seconds();
+        solve_on(answer);
         while (!is_finished())
           {
             timer.restart();
@@ -144,18 +144,19 @@ namespace Debond
                 say_what_is_missing(limit);
                 break;
               }
-            const auto next =
+            Answer<dim> next;
+            next.scene =
               std::make_shared<const Scene<dim>>(problem, body, "", ranks);
-            SolveSettings on_next = without_proof(wanted);
+            next.choice = answer.choice;
             try
               {
                 // The choice depends on the size, so that a sequence may begin
                 // with a factorisation and end with multigrid. What does not
                 // fit ends the sequence, not the run: the result of the mesh
                 // before stays.
-                choose_linear_solver(*next,
+                choose_linear_solver(*next.scene,
                                      settings.parameters,
-                                     on_next.choice);
+                                     next.choice);
               }
             catch (const BadInput &error)
               {
@@ -169,147 +170,169 @@ namespace Debond
               }
             // The interpolated state keeps the fronts of the bonds, so that a
             // finer mesh stays with the same minimum and needs few steps.
-            progress.start = divided_displacement(scene->problem(),
-                                                  result.path.result.u,
-                                                  body->ancestors(),
-                                                  next->problem());
-            observer.next_mesh_is_made(progress, *next);
+            meshes.start = divided_displacement(answer.scene->problem(),
+                                                answer.solution.u,
+                                                body->ancestors(),
+                                                next.scene->problem());
+            next.meshes  = meshes;
+            observer.next_mesh_is_made(next);
             const std::shared_ptr<const Body<dim>> finished = latest;
             latest                                          = body;
             // Mesh and matrix of the old scene would lie beside the new
             // factorisation at the peak of the memory. The state of a path
             // refers to its scene, which then has to stay.
-            if (finished && result.path.progress.steps.empty())
-              scene.reset();
-            if (!solve_on(next, on_next))
+            if (finished && answer.path.steps.empty())
+              answer.scene.reset();
+            if (!solve_on(std::move(next)))
               {
                 // A signal has ended the work on the new mesh; the files are
                 // written for the old one, which has to be made again.
-                if (!scene)
-                  scene = std::make_shared<const Scene<dim>>(problem,
-                                                             finished,
-                                                             "",
-                                                             ranks);
+                if (!answer.scene)
+                  answer.scene = std::make_shared<const Scene<dim>>(problem,
+                                                                    finished,
+                                                                    "",
+                                                                    ranks);
                 break;
               }
           }
         // The proof is about one mesh, so it waits for the last one and starts
         // from its result.
         if (settings.parameters.prove &&
-            result.path.result.status == SolverStatus::success)
-          result.path.result = solve(result.choice,
-                                     settings.parameters,
-                                     *scene,
-                                     nullptr,
-                                     false,
-                                     &result.path.result.u);
-        result.scene  = scene;
-        result.levels = progress.levels;
-        return std::move(result);
+            answer.solution.status == SolverStatus::success)
+          answer.solution = solve(answer.choice,
+                                  settings.parameters,
+                                  *answer.scene,
+                                  {},
+                                  &answer.solution.u);
+        // From here on a restart stays on this mesh.
+        meshes.is_last = true;
+        return std::move(answer);
       }
 
     private:
       /// Only the last mesh has a proof.
-      SolveSettings
-      without_proof(const MethodChoice &choice_of_mesh) const
+      static SolverParameters
+      without_proof(SolverParameters parameters)
       {
-        SolveSettings result    = settings;
-        result.choice           = choice_of_mesh;
-        result.parameters.prove = false;
-        return result;
+        parameters.prove = false;
+        return parameters;
       }
 
-      /// Solves on one mesh. Returns whether there is a result on it, which a
-      /// finer one may replace, or which is the last word; if a signal came
-      /// before, the result of the mesh before stays.
+      /// Solves on the mesh of @p begun. Returns whether there is a result on
+      /// it, which a finer one may replace, or which is the last word; if a
+      /// signal came before, the result of the mesh before stays.
       bool
-      solve_on(const std::shared_ptr<const Scene<dim>> &here,
-               const SolveSettings                     &on_mesh)
+      solve_on(Answer<dim> begun)
       {
-        estimate = {};
-        FollowedPath<dim> path;
-        SolveResult       solution;
+        // Global branch and arc belong to the last mesh alone.
+        LoadPathParameters followed = problem.load_path;
+        followed.global_branch      = GlobalBranch::none;
+        followed.arc                = false;
+        estimate                    = {};
+        Answer<dim> found           = std::move(begun);
         try
           {
-            if (problem.load_path.factors.empty())
-              {
-                solution =
-                  solve(on_mesh.choice,
-                        on_mesh.parameters,
-                        *here,
-                        nullptr,
-                        false,
-                        progress.start.size() > 0 ? &progress.start : nullptr);
-                functional = solution.functional;
-                // An estimate of what is no equilibrium would measure the
-                // residual of the solver and not the error of the mesh.
-                if (can_be_verified(solution.status) &&
-                    !solution.minimum.interrupted)
-                  estimate = estimate_error(here->estimated(here->adhesion()),
-                                            solution.u,
-                                            solution.functional);
-              }
-            else
-              {
-                path     = follow(*here, on_mesh);
-                solution = std::move(path.result);
-              }
+            found =
+              solve_on_mesh<dim>(followed,
+                                 {of_mesh, settings.tolerance},
+                                 found,
+                                 [this](const Answer<dim>       &state,
+                                        const Verification<dim> &verification) {
+                                   observer.step_is_done(state, verification);
+                                   estimate_step(state);
+                                 },
+                                 {});
+            if (followed.factors.empty())
+              estimate_minimum(found);
           }
         // The data of the scene are evaluated at points that the solve does not
         // ask for, and may be wrong there. The result is none the worse, but
         // there is nothing to refine by.
         catch (const std::invalid_argument &error)
           {
-            result.shortfall =
+            found.meshes.shortfall =
               std::string("The error of the mesh is not known, ") +
               error.what() + '.';
           }
         // Half a solve on a finer mesh is worth less than a finished one on a
         // coarser mesh.
-        const bool has_result = result.path.result.u.size() > 0;
-        if (has_result && solution.status == SolverStatus::interrupted)
+        const bool has_result = answer.solution.u.size() > 0;
+        if (has_result && found.solution.status == SolverStatus::interrupted)
           {
             interrupt();
             return false;
           }
         // From here on the result is that of this mesh, whatever it is worth;
         // only a signal leaves that of the mesh before in its place.
-        path.result   = std::move(solution);
-        result.path   = std::move(path);
-        scene         = here;
-        result.choice = on_mesh.choice;
-        // Where the body comes off on the way, the factors before that count.
-        const bool comes_off_later =
-          result.path.result.status == SolverStatus::comes_off &&
-          !result.path.progress.steps.empty();
+        answer = std::move(found);
+        // If the body detaches on the way, the factors before that count.
+        const Solution &solution = answer.solution;
+        const bool      comes_off_later =
+          solution.status == SolverStatus::comes_off &&
+          !answer.path.steps.empty();
         const bool is_usable =
-          (can_be_verified(result.path.result.status) || comes_off_later) &&
-          !result.path.result.minimum.interrupted;
-        if (is_usable && result.shortfall.empty())
+          (can_be_verified(solution.status) || comes_off_later) &&
+          !solution.minimum.interrupted;
+        if (is_usable && meshes.shortfall.empty())
           look_at_goal(false);
-        ended = !is_usable || !result.shortfall.empty();
+        ended = !is_usable || !meshes.shortfall.empty();
         if (!ended)
           add_level();
         return true;
+      }
+
+      /// An estimate of what is no equilibrium would measure the residual of
+      /// the solver and not the error of the mesh.
+      void
+      estimate_minimum(const Answer<dim> &found)
+      {
+        const Solution &solution = found.solution;
+        functional               = solution.functional;
+        if (can_be_verified(solution.status) && !solution.minimum.interrupted)
+          estimate = estimate_error(found.scene->estimated(found.bonds()),
+                                    solution.u,
+                                    solution.functional);
+      }
+
+      /// Of a load path the estimate is that of the state that has the largest
+      /// error relative to its J.
+      void
+      estimate_step(const Answer<dim> &state)
+      {
+        const LoadPathStep<dim> &step = state.path.steps.back();
+        ErrorEstimate            of_step =
+          estimate_error(state.scene->estimated(state.bonds()),
+                         state.path.u,
+                         step.state.functional,
+                         step.factors());
+        // Rounding does not choose between steps that are as good.
+        if (!estimate.cells.empty() &&
+            of_step.relative() <=
+              (1. + Tolerance::decimals) * estimate.relative())
+          return;
+        estimate       = std::move(of_step);
+        functional     = step.state.functional;
+        estimated_step = step.step;
       }
 
       /// Lists the mesh, for later ones that are compared with it.
       void
       add_level()
       {
-        const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
+        const ElasticUnknowns<dim> &unknowns =
+          answer.scene->problem().unknowns();
         // What a search has lowered J by on this mesh is no gain of
         // refinement, and is left out of the measured factor.
         const double search_gain =
-          result.path.result.functional_from_start.value_or(functional) -
+          answer.solution.functional_from_start.value_or(functional) -
           functional;
         // What later meshes are compared with, and what log and summary say
         // of this one. add() sets its error_factor.
-        AdaptiveLevel level = {scene->n_cells(),
+        AdaptiveLevel level = {answer.scene->n_cells(),
                                unknowns.n_free_dofs(),
                                static_cast<unsigned int>(
-                                 scene->contact_boundary().nodes.size()),
-                               result.path.result.iterations,
+                                 answer.scene->contact_boundary().nodes.size()),
+                               answer.solution.iterations,
                                estimated_step,
                                functional,
                                estimate.relative(),
@@ -319,45 +342,9 @@ namespace Debond
                                goal_here.width,
                                seconds + timer.wall_time()};
         growth.add(level);
-        observer.level_is_done(
-          static_cast<unsigned int>(progress.levels.size()), level);
-        progress.levels.push_back(level);
-      }
-
-      /// The states that the load path leads to, with the estimate of the one
-      /// that has the largest error relative to its J.
-      FollowedPath<dim>
-      follow(const Scene<dim> &here, const SolveSettings &on_mesh)
-      {
-        // Global branch and arc belong to the last mesh alone.
-        LoadPathParameters followed = problem.load_path;
-        followed.global_branch      = GlobalBranch::none;
-        followed.arc                = false;
-        return follow_load_path<dim>(
-          followed,
-          on_mesh,
-          here,
-          {},
-          [&](const PathProgress<dim>     &progress,
-              const Verification<dim>     &verification,
-              const AdhesionIntegral<dim> &bonds) {
-            observer.step_is_done(progress, verification, bonds);
-            const LoadPathStep<dim> &step = progress.steps.back();
-            ErrorEstimate            own = estimate_error(here.estimated(bonds),
-                                               progress.u,
-                                               step.state.functional,
-                                               step.factors());
-            // Rounding does not choose between steps that are as good.
-            if (estimate.cells.empty() ||
-                own.relative() >
-                  (1. + Tolerance::decimals) * estimate.relative())
-              {
-                estimate       = std::move(own);
-                functional     = step.state.functional;
-                estimated_step = step.step;
-              }
-          },
-          nullptr);
+        observer.level_is_done(static_cast<unsigned int>(meshes.levels.size()),
+                               level);
+        meshes.levels.push_back(level);
       }
 
       void
@@ -367,8 +354,8 @@ namespace Debond
           return;
         // A goal that cannot be looked at on this mesh ends the refinement with
         // its reason.
-        goal_here        = goal->look(scene, result.path.result, is_last);
-        result.shortfall = goal_here.failure;
+        goal_here        = goal->look(answer.scene, answer.solution, is_last);
+        meshes.shortfall = goal_here.failure;
       }
 
       bool
@@ -398,22 +385,22 @@ namespace Debond
         // being reached.
         const bool by_goal = !goal_here.is_reached && !goal_here.parts.empty();
         double     times   = goal ? growth_for_goal : growth.next();
-        progress.divisions.emplace_back();
+        meshes.divisions.emplace_back();
         // If the mesh would be too large, smaller ones are tried, down to one
         // that is hardly worth the solve. Each try starts from the same cells.
         while (true)
           {
-            progress.divisions.back() =
+            meshes.divisions.back() =
               divisions(by_goal ? goal_here.parts :
-                                  of_whole_mesh(*scene, estimate.cells),
+                                  of_whole_mesh(*answer.scene, estimate.cells),
                         dim,
                         times);
             std::shared_ptr<const BisectedBody<dim>> body =
-              bisected(*scene).refined(progress.divisions.back());
+              bisected(*answer.scene).refined(meshes.divisions.back());
             limit =
               too_large<dim>(problem,
                              accuracy,
-                             wanted,
+                             of_mesh.linear_solver,
                              goal,
                              memory_left(settings.parameters.memory_limit),
                              *body);
@@ -429,17 +416,17 @@ namespace Debond
         // The goal may reach on the last mesh what it has put off, and is asked
         // before anything is called missing.
         look_at_goal(true);
-        if (!result.shortfall.empty())
+        if (!meshes.shortfall.empty())
           return;
         // Goal and target may both be missed, and each is named with the limit
         // that is in its way.
         if (goal && !goal_here.is_reached)
-          result.shortfall = goal_here.shortfall + ": " + limit + '.';
+          meshes.shortfall = goal_here.shortfall + ": " + limit + '.';
         if (!growth.meets_target() && accuracy.target > 0.)
           {
-            const double       error = progress.levels.back().estimated_error();
+            const double       error = meshes.levels.back().estimated_error();
             std::ostringstream text;
-            text << (result.shortfall.empty() ? "" : " ")
+            text << (meshes.shortfall.empty() ? "" : " ")
                  << "The estimated error of " << std::setprecision(2) << error
                  << (error > accuracy.target ?
                        " is above" :
@@ -447,40 +434,41 @@ namespace Debond
                        "for")
                  << " Accuracy/Target = " << accuracy.target << ": " << limit
                  << '.';
-            result.shortfall += text.str();
+            meshes.shortfall += text.str();
           }
       }
 
       void
       interrupt()
       {
-        result.path.result.status = SolverStatus::interrupted;
-        result.path.result.message =
+        answer.solution.status = SolverStatus::interrupted;
+        answer.solution.message =
           "The result is that of the last mesh that was finished.";
       }
 
-      const SolveSettings              &settings;
-      const AccuracyParameters         &accuracy;
-      RefinementGoal<dim> *const        goal; ///< null without one
-      const AdaptiveObserver<dim>      &observer;
-      std::shared_ptr<const Scene<dim>> scene;
+      const SolveSettings         &settings;
+      const SolverParameters       of_mesh;
+      const AccuracyParameters    &accuracy;
+      RefinementGoal<dim> *const   goal; ///< null without one
+      const AdaptiveObserver<dim> &observer;
 
       // These are the same on all meshes.
       const ProblemParameters problem;
       const MPI_Comm          ranks;
-      const MethodChoice      wanted; ///< the linear solver may be automatic
       const Interruption     &interruption = Interruption::by_signal();
 
-      AdaptiveResult<dim> result;
-      bool                ended = false; ///< by no result, or no estimate
-      AdaptiveProgress    progress;
-      ErrorEstimate       estimate;
-      double              functional     = 0.; ///< that it is relative to
-      unsigned int        estimated_step = 0;  ///< of the path
-      MeshGrowth          growth;
-      GoalOnMesh          goal_here;
-      dealii::Timer       timer;
-      double              seconds = 0.; ///< before the timer started
+      /// The last mesh on which there is a result; before the first solve what
+      /// there is to begin with.
+      Answer<dim>   answer;
+      MeshProgress &meshes = answer.meshes;
+      bool          ended  = false; ///< by no result, or no estimate
+      ErrorEstimate estimate;
+      double        functional     = 0.; ///< that it is relative to
+      unsigned int  estimated_step = 0;  ///< of the path
+      MeshGrowth    growth;
+      GoalOnMesh    goal_here;
+      dealii::Timer timer;
+      double        seconds = 0.; ///< before the timer started
 
       std::shared_ptr<const Body<dim>> latest;
     };
@@ -534,16 +522,15 @@ namespace Debond
 
 
   template <int dim>
-  AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings              &settings,
-                   const AccuracyParameters         &accuracy,
-                   RefinementGoal<dim>              *goal,
-                   const AdaptiveProgress           &begun,
-                   const AdaptiveObserver<dim>      &observer,
-                   std::shared_ptr<const Scene<dim>> scene)
+  Answer<dim>
+  solve_adaptively(const SolveSettings         &settings,
+                   const AccuracyParameters    &accuracy,
+                   RefinementGoal<dim>         *goal,
+                   const AdaptiveObserver<dim> &observer,
+                   Answer<dim>                  begun)
   {
     return AdaptiveLoop<dim>(
-             settings, accuracy, goal, begun, observer, std::move(scene))
+             settings, accuracy, goal, observer, std::move(begun))
       .run();
   }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
-#include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/prolongations.h>
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/multigrid_factor.h>
@@ -11,7 +9,6 @@
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/minimum/contact_solver.h>
 #include <debond/solve/minimum/displacement_problem.h>
-#include <debond/solve/minimum/solve.h>
 
 #include <numeric>
 
@@ -19,16 +16,6 @@ namespace Debond
 {
   namespace
   {
-    /// Contact boundaries with more nodes take their start from coarser ones.
-    constexpr unsigned int coarsest_contact_nodes = 50;
-
-    /// The number of unknowns up to which a coarser mesh is factorised for the
-    /// start: there a factorisation takes a small part of the time of the
-    /// finest mesh, even in 3D.
-    constexpr double largest_coarse_factorisation = 3e4;
-
-
-
     /// Levels of the coarser meshes of the body, or of aggregates.
     template <int dim>
     std::unique_ptr<TruncatedMultigrid>
@@ -89,19 +76,18 @@ namespace Debond
 
     /// The minimum of J, which is the functional of the problem and the @p
     /// energy of what is prescribed.
-    ContactMinimum
+    Solution
     by_majorise_minimise(const MajoriseMinimiseParameters &parameters,
                          const double                      energy,
                          Progress                         &progress,
                          MajorantProblem                  &problem)
     {
-      ContactMinimum result;
-      static_cast<MajoriseMinimiseResult &>(result) =
+      MajoriseMinimiseResult result =
         MajoriseMinimise(parameters)
           .minimize(problem,
                     progress.monitor<MajoriseMinimiseIteration>(energy));
       add_energy(energy, result);
-      return result;
+      return solution_of(result);
     }
 
 
@@ -111,8 +97,11 @@ namespace Debond
     class CondensedSolver : public ContactSolver<dim>
     {
     public:
-      CondensedSolver(const MethodChoice &choice, const Scene<dim> &scene)
-        : scene(scene)
+      CondensedSolver(const MethodChoice     &choice,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene)
+        : parameters(parameters)
+        , scene(scene)
         , problem(scene.problem())
         , contact(problem.unknowns().contact())
         , is_by_bundle(choice.method == SolverMethod::energy_bundle)
@@ -122,37 +111,16 @@ namespace Debond
       {}
 
       void
-      start_from(const Eigen::VectorXd &point, const DofVector &) override
+      start_from(const DofVector &u) override
       {
         // A point from another mesh or load may miss the bounds by its
         // interpolation.
-        s = point.cwiseMin(contact.boundary().upper_bounds());
+        s = contact.trace(u).cwiseMin(contact.boundary().upper_bounds());
       }
 
-      void
-      start_from_coarser(const SolverParameters &parameters,
-                         SolveResult            &result) override
-      {
-        // Coarser spaces do not know the gaps of bodies at rest, and what only
-        // bonds hold has to start with all of them. They have no tangents
-        // either.
-        if (is_by_bundle || problem.unknowns().has_gap() ||
-            free_motions.cols() > 0 || scene.adhesion().shears())
-          return;
-        // Active sets and fronts of bonds move by few nodes a step. From
-        // subspaces with half as many nodes each the finest one needs one or
-        // two systems; the minimum that is found may be another one than that
-        // of slow loading from rest.
-        s = coarse_start(condensed_problem(whole, scene.adhesion()),
-                         coarsen(contact.boundary(), coarsest_contact_nodes),
-                         MajoriseMinimise(parameters.majorise_minimise),
-                         result.notes);
-      }
-
-      ContactMinimum
+      Solution
       minimise(const LoadFactors            factors,
                const AdhesionIntegral<dim> &bonds,
-               const SolverParameters      &parameters,
                Progress                    &progress) override
       {
         // All factors share one factorisation: another load costs its two
@@ -195,7 +163,7 @@ namespace Debond
       DofVector
       displacement() const override
       {
-        return here->expand(s);
+        return (here ? *here : whole).expand(s);
       }
 
       std::unique_ptr<CorrectionSolver>
@@ -213,7 +181,7 @@ namespace Debond
     private:
       /// The paper's method in the metric of S: the condensed functional has
       /// the same form on the normals alone.
-      ContactMinimum
+      Solution
       by_bundle(ProximalBundleParameters     parameters,
                 const AdhesionIntegral<dim> &bonds,
                 Progress                    &progress)
@@ -249,25 +217,10 @@ namespace Debond
         add_energy(energy, bundle);
         s = eigen_view(x);
 
-        ContactMinimum result;
-        result.status     = bundle.status;
-        result.functional = bundle.functional;
-        // The log of an iteration has the same columns for all methods: v_k
-        // takes the place of the residual, and QP steps that of active set
-        // steps.
-        result.residual = bundle.v;
-        result.message  = bundle.message;
-        for (const BundleIteration &iteration : bundle.history)
-          result.history.push_back({iteration.iteration,
-                                    iteration.functional,
-                                    iteration.v,
-                                    iteration.qp_steps,
-                                    0,
-                                    0});
-        result.bundle = std::move(bundle);
-        return result;
+        return solution_of(bundle);
       }
 
+      const SolverParameters    &parameters;
       const Scene<dim>          &scene;
       const ElasticProblem<dim> &problem;
       const ContactSpace<dim>   &contact;
@@ -287,19 +240,22 @@ namespace Debond
     class MultigridSolver : public ContactSolver<dim>
     {
     public:
-      MultigridSolver(const Scene<dim> &scene, const bool has_levels)
-        : scene(scene)
+      MultigridSolver(const bool              has_levels,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene)
+        : parameters(parameters)
+        , scene(scene)
         , problem(scene.problem())
         , cycle(make_cycle(scene, has_levels))
       {
         const ElasticUnknowns<dim> &unknowns = problem.unknowns();
         DofVector                   rest(unknowns.n_dofs());
         unknowns.contact().add(unknowns.contact().at_rest(), rest);
-        start_from({}, rest);
+        MultigridSolver::start_from(rest);
       }
 
       void
-      start_from(const Eigen::VectorXd &, const DofVector &start) override
+      start_from(const DofVector &start) override
       {
         const auto              &unknowns = problem.unknowns();
         const ContactSpace<dim> &contact  = unknowns.contact();
@@ -312,52 +268,9 @@ namespace Debond
                        unknowns.communicator());
       }
 
-      /// The first coarser mesh that is factorised has the search of the scene.
-      /// Each rank does the same.
-      void
-      start_from_coarser(const SolverParameters &parameters,
-                         SolveResult            &result) override
-      {
-        // This mesh decides which of the minima is found, so it is the finest
-        // one that can have the whole search. Its proof would say nothing about
-        // the finest mesh.
-        std::shared_ptr<const Body<dim>> body = scene.body().coarser();
-        while (body && dim * body->n_vertices() > largest_coarse_factorisation)
-          body = body->coarser();
-        if (body == nullptr)
-          return;
-        // The coarse mesh is a scene of its own, on which loads, supports and
-        // bonds are evaluated anew. What its search found is told with the
-        // result.
-        const Scene<dim> coarse_scene(scene.parameters(), body);
-        SolverParameters coarse = parameters;
-        coarse.prove            = false;
-        MethodChoice choice;
-        choice.method        = SolverMethod::majorise_minimise;
-        choice.linear_solver = LinearSolver::direct;
-        choice.is_condensed  = true;
-        Progress    silent;
-        SolveResult start;
-        solve_contact(choice, coarse, coarse_scene, nullptr, silent, start);
-        result.notes                   = start.notes;
-        result.minimum                 = start.minimum;
-        result.minimum.proof_attempted = false;
-        // Even a failure leaves a displacement that is nearer to the minimum
-        // than rest, so it is used, and a note says so.
-        if (!can_be_verified(start.status))
-          result.notes.push_back(
-            "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
-            (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
-        start_from({},
-                   interpolate_displacement(coarse_scene.problem(),
-                                            start.u,
-                                            problem));
-      }
-
-      ContactMinimum
+      Solution
       minimise(const LoadFactors            factors,
                const AdhesionIntegral<dim> &bonds,
-               const SolverParameters      &parameters,
                Progress                    &progress) override
       {
         const DofVector load = problem.load(factors);
@@ -391,10 +304,112 @@ namespace Debond
       }
 
     private:
+      const SolverParameters                   &parameters;
       const Scene<dim>                         &scene;
       const ElasticProblem<dim>                &problem;
       const std::unique_ptr<TruncatedMultigrid> cycle;
       DistributedVector                         u;
+    };
+
+
+
+    template <int dim>
+    std::unique_ptr<ContactSolver<dim>>
+    make(const MethodChoice     &choice,
+         const SolverParameters &parameters,
+         const Scene<dim>       &scene)
+    {
+      // Only the first one has S and g.
+      if (choice.is_condensed)
+        return std::make_unique<CondensedSolver<dim>>(choice,
+                                                      parameters,
+                                                      scene);
+      return std::make_unique<MultigridSolver<dim>>(choice.has_levels,
+                                                    parameters,
+                                                    scene);
+    }
+
+
+
+    /// Multigrid that stagnates says nothing about the scene, since materials
+    /// or cells may be too much for its smoother. So a factorisation begins
+    /// anew, from where this minimisation began and not from where multigrid
+    /// was left, and the reader is told.
+    template <int dim>
+    class MultigridOrFactorisation : public ContactSolver<dim>
+    {
+    public:
+      MultigridOrFactorisation(const MethodChoice     &choice,
+                               const SolverParameters &parameters,
+                               const Scene<dim>       &scene)
+        : choice(choice)
+        , parameters(parameters)
+        , scene(scene)
+        , solver(make(choice, parameters, scene))
+      {}
+
+      void
+      start_from(const DofVector &u) override
+      {
+        solver->start_from(u);
+      }
+
+      Solution
+      minimise(const LoadFactors            factors,
+               const AdhesionIntegral<dim> &bonds,
+               Progress                    &progress) override
+      {
+        const auto &unknowns = scene.problem().unknowns();
+        DofVector   start(unknowns.n_dofs());
+        unknowns.contact().add(solver->point(), start);
+        Solution   result = solver->minimise(factors, bonds, progress);
+        const auto direct =
+          factorisation_instead(scene, parameters, choice, result.status);
+        if (!direct)
+          return result;
+        const std::string note =
+          "multigrid did not converge, and a factorisation has taken its "
+          "place: " +
+          result.message;
+        choice = *direct;
+        // The levels need not lie beside the factor in memory.
+        solver.reset();
+        solver = make(choice, parameters, scene);
+        solver->start_from(start);
+        result = solver->minimise(factors, bonds, progress);
+        result.notes.push_back(note);
+        return result;
+      }
+
+      Eigen::VectorXd
+      point() const override
+      {
+        return solver->point();
+      }
+
+      DofVector
+      displacement() const override
+      {
+        return solver->displacement();
+      }
+
+      std::unique_ptr<CorrectionSolver>
+      correction() override
+      {
+        return solver->correction();
+      }
+
+      const Condensation *
+      condensed() const override
+      {
+        return solver->condensed();
+      }
+
+    private:
+      MethodChoice                        choice;
+      const SolverParameters             &parameters;
+      const Scene<dim>                   &scene;
+      std::unique_ptr<ContactSolver<dim>> solver;
     };
   } // namespace
 
@@ -402,12 +417,15 @@ namespace Debond
 
   template <int dim>
   std::unique_ptr<ContactSolver<dim>>
-  make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene)
+  make_contact_solver(const MethodChoice     &choice,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene)
   {
-    // Both are one interface to the caller, but only the first one has S and g.
-    if (choice.is_condensed)
-      return std::make_unique<CondensedSolver<dim>>(choice, scene);
-    return std::make_unique<MultigridSolver<dim>>(scene, choice.has_levels);
+    if (choice.linear_solver == LinearSolver::multigrid)
+      return std::make_unique<MultigridOrFactorisation<dim>>(choice,
+                                                             parameters,
+                                                             scene);
+    return make(choice, parameters, scene);
   }
 
 

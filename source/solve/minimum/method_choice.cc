@@ -87,6 +87,17 @@ namespace Debond
 
 
 
+    /// The paper's method solves no linear system.
+    LinearSolver
+    wanted_linear_solver(const SolverParameters &solver,
+                         const SolverMethod      method)
+    {
+      return method == SolverMethod::euclidean_bundle ? LinearSolver::none :
+                                                        solver.linear_solver;
+    }
+
+
+
     void
     check_load_path(const ProblemParameters &problem,
                     const bool               proves,
@@ -129,15 +140,15 @@ namespace Debond
 
 
   double
-  least_memory(const MethodChoice &wanted,
-               const unsigned int  dim,
-               const double        n)
+  least_memory(const LinearSolver wanted,
+               const unsigned int dim,
+               const double       n)
   {
     const double with_multigrid =
       (bytes_of_mesh_and_matrix + memory_with_multigrid(dim, false)) * n;
-    return wanted.linear_solver == LinearSolver::direct ?
+    return wanted == LinearSolver::direct ?
              memory_of_factorisation(dim, n) :
-           wanted.linear_solver == LinearSolver::multigrid ?
+           wanted == LinearSolver::multigrid ?
              with_multigrid :
              std::min(memory_of_factorisation(dim, n), with_multigrid);
   }
@@ -163,9 +174,9 @@ namespace Debond
 
     // Methods and entries that exclude each other are refused now, without a
     // mesh.
-    MethodChoice choice = {solver.method, solver.linear_solver, ""};
-    if (choice.method == SolverMethod::euclidean_bundle)
-      choice.linear_solver = LinearSolver::none;
+    MethodChoice choice;
+    choice.method        = solver.method;
+    choice.linear_solver = wanted_linear_solver(solver, choice.method);
     // The paper's method needs thousands of iterations where this one needs a
     // few majorants; it is there to be reproduced, for those who ask for it.
     if (choice.method == SolverMethod::automatic)
@@ -210,6 +221,8 @@ namespace Debond
       has_levels || has_aggregation || n <= largest_without_aggregates;
     const bool needs_S      = needs_condensed(scene, solver, choice.method);
     double     direct_bytes = 0.;
+    choice.linear_solver    = wanted_linear_solver(solver, choice.method);
+    choice.reason_for_multigrid.clear();
     // A is known by now, and its symbolic factorisation gives the numbers of
     // entries and operations of the factor, in a small part of the time.
     if (choice.linear_solver == LinearSolver::automatic ||
@@ -228,7 +241,7 @@ namespace Debond
           {
             const std::size_t n_steps =
               std::max<std::size_t>(1, problem.load_path.factors.size());
-            std::string why_multigrid;
+            std::string &why_multigrid = choice.reason_for_multigrid;
             // CHOLMOD counts in 31 bits, so that a factor beyond some size is
             // refused by it whatever the memory. Multigrid pays its cycles for
             // each step of a path, and for each column of S if that is needed,
@@ -243,13 +256,9 @@ namespace Debond
                                          more_cycles(problem.materials) *
                                          static_cast<double>(n_steps))
               why_multigrid = "it takes less time";
-            choice.linear_solver = LinearSolver::direct;
-            if (!why_multigrid.empty())
-              {
-                choice.linear_solver = LinearSolver::multigrid;
-                choice.reason += (choice.reason.empty() ? "" : "; ") +
-                                 ("by multigrid, since " + why_multigrid);
-              }
+            choice.linear_solver = why_multigrid.empty() ?
+                                     LinearSolver::direct :
+                                     LinearSolver::multigrid;
           }
       }
 
@@ -304,11 +313,12 @@ namespace Debond
       return {};
     // Too little memory for a factorisation leaves the failure of multigrid as
     // the result.
-    MethodChoice direct  = choice;
-    direct.linear_solver = LinearSolver::direct;
+    MethodChoice     direct   = choice;
+    SolverParameters directly = solver;
+    directly.linear_solver    = LinearSolver::direct;
     try
       {
-        choose_linear_solver(scene, solver, direct);
+        choose_linear_solver(scene, directly, direct);
       }
     catch (const BadInput &)
       {

@@ -7,11 +7,11 @@
 namespace Debond
 {
   template <int dim>
-  bool
+  RefinedResult
   refine_result(const Scene<dim>   &scene,
                 CorrectionSolver   &solver,
                 const Interruption &interruption,
-                SolveResult        &result)
+                Solution           &result)
   {
     // On very slender bodies rounding in double precision keeps a solver from
     // its end. Where it has stopped is near enough to the minimum for extended
@@ -19,7 +19,7 @@ namespace Debond
     const bool has_failed = result.status == SolverStatus::quadratic_program ||
                             result.status == SolverStatus::no_descent;
     if (!can_be_verified(result.status) && !has_failed)
-      return false;
+      return {};
     const dealii::Timer   timer;
     const Eigen::VectorXd before =
       scene.problem().unknowns().contact().trace(result.u);
@@ -39,19 +39,17 @@ namespace Debond
           "tolerance; the result is that of the refinement in extended "
           "precision from where it ended.");
       }
-    // If bonds have changed their pieces by the refinement, the word that the
-    // search has given is about another state.
     const Eigen::VectorXd after =
       scene.problem().unknowns().contact().trace(result.u);
     const auto curvature = [&](const Eigen::VectorXd &s) {
       return scene.adhesion().second_derivative(s);
     };
-    if (after.size() > 0 &&
-        (has_failed || (curvature(after) - curvature(before)).norm() >
-                         Tolerance::same_curvature * curvature(after).norm()))
-      result.minimum.kind = kind_without_search(scene.adhesion(), after);
     result.parts["refinement"] = timer.wall_time();
-    return !note.empty();
+    return {!note.empty(),
+            after.size() > 0 &&
+              (has_failed ||
+               (curvature(after) - curvature(before)).norm() >
+                 Tolerance::same_curvature * curvature(after).norm())};
   }
 
 

@@ -5,6 +5,7 @@
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/minimum/contact_solver.h>
 #include <debond/solve/minimum/refinement.h>
+#include <debond/solve/minimum/solve.h>
 #include <debond/solve/path/bond_change.h>
 #include <debond/solve/path/global_branch.h>
 #include <debond/solve/path/load_path.h>
@@ -113,49 +114,38 @@ namespace Debond
     public:
       PathFollower(const LoadPathParameters &parameters,
                    const SolveSettings      &settings,
-                   const Scene<dim>         &scene,
-                   const FollowedPath<dim>  &start,
+                   Answer<dim>               begun,
                    std::ostream             *out)
-        : progress(start.progress)
+        : answer(std::move(begun))
         , parameters(parameters)
-        , solver_parameters(settings.parameters)
-        , tolerance(settings.tolerance)
-        , scene(scene)
+        , settings(settings)
+        , scene(*answer.scene)
         , table(parameters, out)
-        , result(start.result)
-        , choice(settings.choice)
-        , solver(steps.size() < parameters.factors.size() || parameters.arc ||
-                     parameters.global_branch != GlobalBranch::none ?
-                   make_contact_solver(choice, scene) :
-                   nullptr)
-        , condensed(solver ? solver->condensed() : nullptr)
       {
+        if (!steps.empty())
+          return;
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
-        if (steps.empty())
+        progress.u.reinit(unknowns.n_dofs());
+        unknowns.contact().add(last_point(), progress.u);
+        if (unknowns.has_gap() && !parameters.bonds_heal)
           {
-            progress.u.reinit(unknowns.n_dofs());
-            unknowns.contact().add(last_point(), progress.u);
-            if (unknowns.has_gap() && !parameters.bonds_heal)
-              {
-                AdhesionIntegral<dim> at_rest = bonds_before();
-                at_rest.break_for_good(last_point());
-                progress.memory = at_rest.memory();
-              }
+            AdhesionIntegral<dim> at_rest = bonds_before();
+            at_rest.break_for_good(last_point());
+            progress.memory = at_rest.memory();
           }
-        if (condensed != nullptr && unknowns.is_held_by_supports())
-          result.condition_estimate = condensed->condition_estimate();
-        result.parts["condensation"] += timer.wall_time();
       }
 
       void
       follow(const LoadPathObserver<dim> &observer)
       {
-        timer.restart();
         table.titles("broken part");
         for (const LoadPathStep<dim> &step : steps)
           table.row(step);
         if (!steps.empty())
-          go_on(observer);
+          repeat_last_step(observer);
+        if (steps.size() < parameters.factors.size())
+          make_solver();
+        const dealii::Timer timer;
         while (steps.size() < parameters.factors.size() &&
                (steps.empty() || steps.back().message.empty()))
           {
@@ -190,11 +180,13 @@ namespace Debond
         return !steps.empty() && steps.back().message.empty();
       }
 
-      /// Where only bonds hold the body J may fall without end.
+      /// If only bonds hold the body J may fall without end.
       bool
       has_global_branch() const
       {
-        return condensed != nullptr && parameters.bonds_heal &&
+        return (solver ? solver->condensed() != nullptr :
+                         answer.choice.is_condensed) &&
+               parameters.bonds_heal &&
                scene.problem().unknowns().is_held_by_supports();
       }
 
@@ -208,9 +200,9 @@ namespace Debond
               interrupt("there is no global branch");
             return;
           }
-        const Stage stage("global branch");
-        timer.restart();
-        const CondensedScene<dim> condensed_scene = {scene, *condensed};
+        const Stage               stage("global branch");
+        const CondensedScene<dim> condensed_scene = condensed();
+        const dealii::Timer       timer;
         Branch                    followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
@@ -231,7 +223,7 @@ namespace Debond
         const bool proves = parameters.global_branch == GlobalBranch::prove;
         table.titles(proves ? "gap" : "states tried");
         // A search that was not asked for takes no longer than the path.
-        SolverParameters limited = solver_parameters;
+        SolverParameters limited = settings.parameters;
         if (parameters.global_branch == GlobalBranch::automatic)
           limited.search_operations = operations_of_path();
         const Branch branch = global_branch(
@@ -269,60 +261,91 @@ namespace Debond
       }
 
       /// From the state of the first factor, condensed.
-      std::vector<LoadPathStep<dim>>
+      void
       find_arc()
       {
-        // needs_condensed() asks for it where there is an arc.
-        Assert(condensed != nullptr, dealii::ExcInternalError());
-        timer.restart();
-        const LoadPathArc<dim> arc = follow_arc<dim>({scene, *condensed},
+        const CondensedScene<dim> condensed_scene = condensed();
+        const dealii::Timer       timer;
+        const LoadPathArc<dim>    arc = follow_arc<dim>(condensed_scene,
                                                      points[0],
-                                                     tolerance,
+                                                     settings.tolerance,
                                                      interruption);
         if (arc.interrupted)
           interrupt("the arc is not complete");
         if (!arc.note.empty())
           result.notes.push_back(arc.note);
         result.parts["arc"] = timer.wall_time();
-        return arc.steps;
+        answer.arc          = arc.steps;
       }
 
-      SolveResult
-      take_result()
+      /// What is found, with the numbers of the last factor. The state's word
+      /// may come from the global branch.
+      Answer<dim>
+      take_answer()
       {
-        // Numbers of the last factor; the state's word may come from the global
-        // branch.
         if (steps.empty())
           {
             result.u.reinit(scene.problem().unknowns().n_dofs());
             result.functional = std::numeric_limits<double>::quiet_NaN();
-            return result;
           }
-        result.u            = progress.u;
-        result.load_factor  = steps.back().factors();
-        result.functional   = steps.back().state.functional;
-        result.minimum.kind = kinds.back();
-        return result;
+        else
+          {
+            result.u            = progress.u;
+            result.load_factor  = steps.back().factors();
+            result.functional   = steps.back().state.functional;
+            result.minimum.kind = kinds.back();
+          }
+        return std::move(answer);
       }
 
-      PathProgress<dim>               progress;
-      std::vector<LoadPathStep<dim>> &steps = progress.steps;
-
     private:
-      /// From the last step of an earlier run.
+      /// Made when it is needed: not if all steps are done, and there is no
+      /// more to do.
       void
-      go_on(const LoadPathObserver<dim> &observer)
+      make_solver()
       {
-        const LoadFactors     factors = steps.back().factors();
-        AdhesionIntegral<dim> bonds =
-          scene.adhesion().at(factors.displacements);
-        bonds.set_memory(progress.memory);
         if (solver)
-          solver->start_from(points.back(), progress.u);
-        observer(
-          progress,
-          VerifiedState<dim>(scene, bonds, factors, progress.u).verification,
-          bonds);
+          return;
+        const dealii::Timer timer;
+        solver = make_contact_solver(answer.choice, settings.parameters, scene);
+        if (!steps.empty())
+          solver->start_from(progress.u);
+        if (const Condensation *const condensed = solver->condensed();
+            condensed && scene.problem().unknowns().is_held_by_supports())
+          result.condition_estimate = condensed->condition_estimate();
+        result.parts["condensation"] += timer.wall_time();
+      }
+
+      /// The scene on its contact normals, if the method has it so.
+      CondensedScene<dim>
+      condensed()
+      {
+        make_solver();
+        Assert(solver->condensed() != nullptr, dealii::ExcInternalError());
+        return {scene, *solver->condensed()};
+      }
+
+      /// The last step, of an earlier run or of the loop over meshes, is told
+      /// as if it had been done now.
+      void
+      repeat_last_step(const LoadPathObserver<dim> &observer)
+      {
+        const AdhesionIntegral<dim> bonds = bonds_before();
+        const VerifiedState<dim>    last(scene,
+                                      bonds,
+                                      steps.back().factors(),
+                                      progress.u);
+        tell(bonds, last.verification, observer);
+      }
+
+      void
+      tell(const AdhesionIntegral<dim> &bonds,
+           const Verification<dim>     &verification,
+           const LoadPathObserver<dim> &observer)
+      {
+        answer.path_bonds =
+          std::make_shared<const AdhesionIntegral<dim>>(bonds);
+        observer(answer, verification);
       }
 
       /// Returns whether there is a next step: not if the body comes off.
@@ -335,24 +358,13 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
-        const ContactMinimum minimum = minimise(factors, bonds);
-        if (const auto direct = factorisation_instead(
-              scene, solver_parameters, choice, minimum.status))
-          {
-            result.notes.push_back(multigrid_has_failed + minimum.message);
-            choice = *direct;
-            solver.reset();
-            solver    = make_contact_solver(choice, scene);
-            condensed = solver->condensed();
-            solver->start_from(last_point(), progress.u);
-            return solve(factors, observer);
-          }
+        const Solution minimum = minimise(factors, bonds);
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
           {
             interrupt("the path is not complete");
             return false;
           }
-        add_majorise_result(minimum, result);
+        result.add(minimum);
         result.message.clear();
         if (minimum.status == SolverStatus::comes_off)
           {
@@ -368,7 +380,7 @@ namespace Debond
       /// The minimum from the state before. The fracture energy of bonds may
       /// depend on the mode at which they are damaged, which only the minimum
       /// tells: it is sought again with the modes found, until they hold.
-      ContactMinimum
+      Solution
       minimise(const LoadFactors factors, AdhesionIntegral<dim> &bonds)
       {
         const AdhesionIntegral<dim> last = bonds_before();
@@ -376,14 +388,13 @@ namespace Debond
           {
             Progress silent;
             bonds.freeze_mode();
-            const ContactMinimum minimum =
-              solver->minimise(factors, bonds, solver_parameters, silent);
+            Solution minimum = solver->minimise(factors, bonds, silent);
             if (!can_be_verified(minimum.status) ||
                 bonds.adapt_mode(last, last_point(), solver->point()) <=
                   Tolerance::lag_of_mode ||
                 k == most_modes)
               return minimum;
-            solver->start_from(last_point(), progress.u);
+            solver->start_from(progress.u);
           }
       }
 
@@ -408,12 +419,13 @@ namespace Debond
       /// The step to a minimum. Bonds that do not heal break where it is.
       void
       add_step(const LoadFactors            factors,
-               const ContactMinimum        &minimum,
+               const Solution              &minimum,
                AdhesionIntegral<dim>       &bonds,
                const LoadPathObserver<dim> &observer)
       {
         // The first change on the way is one of the bonds as they were before.
-        std::optional<double> change_factor;
+        std::optional<double>     change_factor;
+        const Condensation *const condensed = solver->condensed();
         if (!steps.empty() && condensed != nullptr)
           change_factor =
             first_bond_change<dim>({scene, *condensed},
@@ -432,7 +444,7 @@ namespace Debond
         LoadPathStep<dim>        step =
           step_of(state, static_cast<unsigned int>(steps.size() + 1), factors);
         step.change_factor = change_factor;
-        step.iterations    = static_cast<unsigned int>(minimum.history.size());
+        step.iterations    = minimum.iterations;
         step.status        = to_string(minimum.status);
         // Only bonds that soften ask for S and g there.
         std::optional<Condensation> at_step;
@@ -443,14 +455,14 @@ namespace Debond
                                             at_step ? &*at_step : nullptr));
         judge(minimum, state.verification, step);
         steps.push_back(step);
-        observer(progress, state.verification, bonds);
+        tell(bonds, state.verification, observer);
       }
 
       /// Status and message of a step, by what the solver and the verification
       /// say. Where rounding kept the solver from its tolerance the
       /// verification decides.
       void
-      judge(const ContactMinimum    &minimum,
+      judge(const Solution          &minimum,
             const Verification<dim> &verification,
             LoadPathStep<dim>       &step)
       {
@@ -494,13 +506,14 @@ namespace Debond
       bool
       is_verified(const Verification<dim> &verification) const
       {
-        return verification.error() <= tolerance;
+        return verification.error() <= settings.tolerance;
       }
 
       std::string
       failure(const Verification<dim> &verification) const
       {
-        return verification.failure(tolerance, condensed == nullptr);
+        return verification.failure(settings.tolerance,
+                                    solver->condensed() == nullptr);
       }
 
       std::string
@@ -517,7 +530,7 @@ namespace Debond
         double n_majorants = 0.;
         for (const LoadPathStep<dim> &step : steps)
           n_majorants += step.iterations;
-        return choice.operations +
+        return answer.choice.operations +
                n_majorants / 3. * std::pow(double(points[0].size()), 3.) +
                double(steps.size()) *
                  (least_of_step +
@@ -528,7 +541,7 @@ namespace Debond
       void
       add_global(const LoadFactors factors, const BranchPoint &point)
       {
-        const CondensedScene<dim>   condensed_scene = {scene, *condensed};
+        const CondensedScene<dim>   condensed_scene = condensed();
         const AdhesionIntegral<dim> bonds_there =
           condensed_scene.bonds(factors);
         DofVector u = condensed_scene.at(factors).expand(point.s);
@@ -556,9 +569,10 @@ namespace Debond
                                "global branch: " + failure(state.verification);
               // The followed state is this one, or as good.
               if (step.message.empty() &&
-                  step.state.functional <= global.functional + rounding +
-                                             solver_parameters.proof.tolerance *
-                                               std::abs(global.functional))
+                  step.state.functional <=
+                    global.functional + rounding +
+                      settings.parameters.proof.tolerance *
+                        std::abs(global.functional))
                 {
                   kinds[k]           = point.which.kind;
                   step.state.minimum = global.minimum;
@@ -573,60 +587,71 @@ namespace Debond
         result.message = location(steps.back()) + "interrupted, " + what;
       }
 
-      const LoadPathParameters &parameters;
-      const SolverParameters   &solver_parameters;
-      const double              tolerance; ///< of the verification
-      const Scene<dim>         &scene;
-      const PathTable<dim>      table;
-      const Interruption       &interruption = Interruption::by_signal();
-      // Before the solver: its time when that is made is the condensation.
-      dealii::Timer timer;
-      SolveResult   result;
-
-
-      MethodChoice                        choice;
-      std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed
-      const Condensation *condensed; ///< null with multigrid as well
-
-      std::vector<Eigen::VectorXd> &points = progress.points;
-      std::vector<MinimumKind>     &kinds  = progress.kinds;
+      Answer<dim>                     answer;
+      PathProgress<dim>              &progress = answer.path;
+      Solution                       &result   = answer.solution;
+      std::vector<LoadPathStep<dim>> &steps    = progress.steps;
+      std::vector<Eigen::VectorXd>   &points   = progress.points;
+      std::vector<MinimumKind>       &kinds    = progress.kinds;
+      const LoadPathParameters       &parameters;
+      const SolveSettings            &settings;
+      const Scene<dim>               &scene;
+      const PathTable<dim>            table;
+      const Interruption             &interruption = Interruption::by_signal();
+      std::unique_ptr<ContactSolver<dim>> solver; ///< see make_solver()
     };
   } // namespace
 
 
 
   template <int dim>
-  FollowedPath<dim>
+  Answer<dim>
   follow_load_path(const LoadPathParameters    &parameters,
                    const SolveSettings         &settings,
-                   const Scene<dim>            &scene,
-                   const FollowedPath<dim>     &start,
+                   Answer<dim>                  begun,
                    const LoadPathObserver<dim> &observer,
                    std::ostream                *out)
   {
-    FollowedPath<dim> followed;
-    PathFollower<dim> path(parameters, settings, scene, start, out);
-    path.follow([&](const PathProgress<dim>     &progress,
-                    const Verification<dim>     &verification,
-                    const AdhesionIntegral<dim> &bonds) {
-      followed.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
-      observer(progress, verification, bonds);
-    });
+    PathFollower<dim> path(parameters, settings, std::move(begun), out);
+    path.follow(observer);
     const bool wants_branch = parameters.global_branch != GlobalBranch::none;
-    if (wants_branch && path.has_global_branch() && path.has_no_failure())
+    const bool has_branch   = path.has_global_branch();
+    if (wants_branch && has_branch && path.has_no_failure())
       path.find_global_branch();
     if (parameters.arc && path.has_no_failure())
-      followed.arc = path.find_arc();
-    followed.result = path.take_result();
-    if (parameters.asks_for_branch && wants_branch && !path.has_global_branch())
-      followed.result.notes.push_back(
+      path.find_arc();
+    Answer<dim> answer = path.take_answer();
+    if (parameters.asks_for_branch && wants_branch && !has_branch)
+      answer.solution.notes.push_back(
         "There is no global branch: it is for bonds that heal, a direct linear "
         "solver and bodies that not only bonds and the foundation hold.");
-    followed.progress = std::move(path.progress);
-    return followed;
+    return answer;
+  }
+
+
+
+  template <int dim>
+  Answer<dim>
+  solve_on_mesh(const LoadPathParameters    &parameters,
+                const SolveSettings         &settings,
+                Answer<dim>                  begun,
+                const LoadPathObserver<dim> &observer,
+                const ProgressLog            log)
+  {
+    if (!parameters.factors.empty())
+      return follow_load_path(
+        parameters, settings, std::move(begun), observer, log.out);
+    const DofVector &start = begun.meshes.start;
+    begun.solution         = solve(begun.choice,
+                           settings.parameters,
+                           *begun.scene,
+                           log,
+                           start.size() > 0 ? &start : nullptr);
+    return begun;
   }
 
 
 
   DEBOND_INSTANTIATE(follow_load_path);
+  DEBOND_INSTANTIATE(solve_on_mesh);
 } // namespace Debond

@@ -2,7 +2,7 @@
 #ifndef debond_solve_meshes_refinement_goal_h
 #define debond_solve_meshes_refinement_goal_h
 
-#include <debond/solve/minimum/solve_result.h>
+#include <debond/solve/minimum/solution.h>
 
 namespace Debond
 {
@@ -33,7 +33,7 @@ namespace Debond
     /// same one with @p is_last if there can be no finer mesh.
     virtual GoalOnMesh
     look(const std::shared_ptr<const Scene<dim>> &scene,
-         const SolveResult                       &result,
+         const Solution                          &result,
          const bool                               is_last) = 0;
 
     /// Unknowns of a factorisation that it needs on a mesh with so many cells,

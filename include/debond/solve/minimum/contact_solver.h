@@ -5,19 +5,10 @@
 #include <debond/solve/minimum/correction_solver.h>
 #include <debond/solve/minimum/method_choice.h>
 #include <debond/solve/minimum/progress.h>
-#include <debond/solve/minimum/solve_result.h>
+#include <debond/solve/minimum/solution.h>
 
 namespace Debond
 {
-  /// The end of a minimisation. A bundle method has an account of its own as
-  /// well, and its v_k stands for the residual.
-  struct ContactMinimum : MajoriseMinimiseResult
-  {
-    std::optional<ProximalBundleResult> bundle;
-  };
-
-
-
   /**
    * Minimises J on one mesh, by majorise-minimise or the energy bundle, under
    * one load after the other, each time from the point before, and to begin
@@ -32,24 +23,16 @@ namespace Debond
   public:
     virtual ~ContactSolver() = default;
 
-    /// The next minimisation starts from @p u, whose normal displacements at
-    /// the contact nodes are @p s: what is condensed reads s alone, multigrid u
-    /// alone. Positive parts of s are cut off.
+    /// The next minimisation starts from @p u, of which positive parts of s are
+    /// cut off.
     virtual void
-    start_from(const Eigen::VectorXd &s, const DofVector &u) = 0;
+    start_from(const DofVector &u) = 0;
 
-    /// The next minimisation starts from the minimum under the whole load on
-    /// coarser meshes or coarser contact boundaries, if there are any. @p
-    /// result gets the counts of a search there, and notes.
-    virtual void
-    start_from_coarser(const SolverParameters &parameters,
-                       SolveResult            &result) = 0;
-
-    /// Minimises J at these @p factors, at which @p bonds are.
-    virtual ContactMinimum
+    /// Minimises J at these @p factors, at which @p bonds are. What it returns
+    /// has no displacement.
+    virtual Solution
     minimise(const LoadFactors            factors,
              const AdhesionIntegral<dim> &bonds,
-             const SolverParameters      &parameters,
              Progress                    &progress) = 0;
 
     /// The normal displacements s of the contact nodes.
@@ -57,7 +40,7 @@ namespace Debond
     point() const = 0;
 
     /// All degrees of freedom, w of ElasticUnknowns, at the factors of the last
-    /// minimisation, of which there has to be one.
+    /// minimisation; before the first one under the whole load.
     virtual DofVector
     displacement() const = 0;
 
@@ -75,10 +58,15 @@ namespace Debond
 
 
 
-  /// The solver of @p choice, which keeps a reference to the scene.
+  /// The solver of @p choice, which keeps references to the scene and the
+  /// parameters. If that is multigrid and does not get to the end of a
+  /// minimisation, a factorisation takes its place from there on, and a note of
+  /// the minimum says so.
   template <int dim>
   std::unique_ptr<ContactSolver<dim>>
-  make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene);
+  make_contact_solver(const MethodChoice     &choice,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene);
 } // namespace Debond
 
 #endif

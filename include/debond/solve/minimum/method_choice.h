@@ -13,7 +13,8 @@ namespace Debond
   {
     SolverMethod method;
     LinearSolver linear_solver;
-    std::string  reason; ///< empty if the scene leaves no choice
+    std::string  reason; ///< of the method; empty if the scene leaves no choice
+    std::string  reason_for_multigrid; ///< empty if it was not chosen
 
     /// Estimate of the program's peak, in bytes.
     double memory = 0.;
@@ -32,21 +33,20 @@ namespace Debond
   /// How states are found, and verified.
   struct SolveSettings
   {
-    MethodChoice     choice;
-    SolverParameters parameters;
-    double           tolerance; ///< of the verification
+    const SolverParameters &parameters;
+    double                  tolerance; ///< of the verification
   };
 
   /// Estimate in bytes of what mesh, A and its factors take for @p n unknowns.
   double
   memory_of_factorisation(const unsigned int dim, const double n);
 
-  /// Returns this estimate with the linear solver of @p wanted, if it is
-  /// automatic with the one that takes less.
+  /// Returns this estimate with the @p wanted linear solver, if it is automatic
+  /// with the one that takes less.
   double
-  least_memory(const MethodChoice &wanted,
-               const unsigned int  dim,
-               const double        n);
+  least_memory(const LinearSolver wanted,
+               const unsigned int dim,
+               const double       n);
 
   /// Returns the method that the scene asks for, or the one that follows from
   /// its entries; the linear solver may stay automatic. Throws BadInput if the
@@ -55,18 +55,14 @@ namespace Debond
   choose_method(const ProblemParameters &problem,
                 const SolverParameters  &solver);
 
-  /// Completes the choice by what a factorisation of A would take. Throws
-  /// BadInput if the memory that is needed exceeds the limit.
+  /// Completes the choice by the linear solver for this mesh, which depends on
+  /// what a factorisation of A would take. Throws BadInput if the memory that
+  /// is needed exceeds the limit.
   template <int dim>
   void
   choose_linear_solver(const Scene<dim>       &scene,
                        const SolverParameters &solver,
                        MethodChoice           &choice);
-
-  /// The beginning of the note where a factorisation takes the place of
-  /// multigrid.
-  constexpr const char *multigrid_has_failed =
-    "multigrid did not converge, and a factorisation has taken its place: ";
 
   /// Returns @p choice with a factorisation, where multigrid has ended with
   /// this @p status, which is no solution; none if that does not fit into

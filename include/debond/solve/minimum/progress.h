@@ -7,6 +7,15 @@
 
 namespace Debond
 {
+  /// Where iterations are printed.
+  struct ProgressLog
+  {
+    std::ostream *out      = nullptr; ///< null for nowhere
+    bool          terminal = false;   ///< whether it is one
+  };
+
+
+
   /**
    * Prints iterations, and ends the method on an interruption. On a terminal it
    * is one line that is rewritten a few times a second, in a log a line at
@@ -16,14 +25,13 @@ namespace Debond
   class Progress
   {
   public:
-    /// Prints nothing if the stream is null, and keeps it and the interruption.
+    /// Keeps the stream and the interruption.
     explicit Progress(
-      std::ostream       *stream       = nullptr,
-      const bool          is_terminal  = false,
+      const ProgressLog   log          = {},
       const Interruption &interruption = Interruption::by_signal())
       : interruption(interruption)
-      , out(stream)
-      , terminal(is_terminal)
+      , out(log.out)
+      , terminal(log.terminal)
     {}
 
     Progress(const Progress &) = delete;

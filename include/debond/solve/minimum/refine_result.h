@@ -3,19 +3,25 @@
 #define debond_solve_minimum_refine_result_h
 
 #include <debond/solve/minimum/refinement.h>
-#include <debond/solve/minimum/solve_result.h>
+#include <debond/solve/minimum/solution.h>
 
 namespace Debond
 {
-  /// Refines a result if rounding has a say in it. Returns whether it has.
-  /// Where rounding kept majorise-minimise from a result the refinement goes on
-  /// from where that ended, and what it finds is a success, with a note.
+  struct RefinedResult
+  {
+    bool is_needed          = false; ///< rounding has a say in the result
+    bool is_on_other_pieces = false; ///< of Phi than before
+  };
+
+  /// Refines a result if rounding has a say in it. If rounding kept
+  /// majorise-minimise from a result the refinement continues from where that
+  /// ended, and what it finds is a success, with a note.
   template <int dim>
-  bool
+  RefinedResult
   refine_result(const Scene<dim>   &scene,
                 CorrectionSolver   &solver,
                 const Interruption &interruption,
-                SolveResult        &result);
+                Solution           &result);
 } // namespace Debond
 
 #endif

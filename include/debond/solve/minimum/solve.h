@@ -4,35 +4,22 @@
 
 #include <debond/solve/minimum/method_choice.h>
 #include <debond/solve/minimum/progress.h>
-#include <debond/solve/minimum/solve_result.h>
+#include <debond/solve/minimum/solution.h>
 
 namespace Debond
 {
-  /// Minimises the functional of the scene, by the given method. Iterations are
-  /// printed to @p out unless it is null. It begins at @p start
-  /// unless that is null: then the Euclidean bundle begins at scene.start(),
-  /// the others at rest or at the minimum on coarser meshes or contact
-  /// boundaries. Ranks that share a scene call it together, and all get the
-  /// result.
+  /// Minimises the functional of the scene, by the given method. It begins at
+  /// @p start unless that is null: then the Euclidean bundle begins at
+  /// scene.start(), the others at rest or at the minimum on coarser meshes or
+  /// contact boundaries. Ranks that share a scene call it together, and all get
+  /// the result.
   template <int dim>
-  SolveResult
+  Solution
   solve(const MethodChoice     &choice,
         const SolverParameters &parameters,
         const Scene<dim>       &scene,
-        std::ostream           *out      = nullptr,
-        const bool              terminal = false,
-        const DofVector        *start    = nullptr);
-
-  /// Solves by a ContactSolver. A method that does not come to its end says so
-  /// by a status.
-  template <int dim>
-  void
-  solve_contact(const MethodChoice     &choice,
-                const SolverParameters &parameters,
-                const Scene<dim>       &scene,
-                const DofVector        *start,
-                Progress               &progress,
-                SolveResult            &result);
+        const ProgressLog       log   = {},
+        const DofVector        *start = nullptr);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds
   /// and the foundation hold.

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_minimum_solve_result_h
-#define debond_solve_minimum_solve_result_h
+#ifndef debond_solve_minimum_solution_h
+#define debond_solve_minimum_solution_h
 
 #include <debond/solve/minimum/which_minimum.h>
 #include <debond/solve/scene/scene.h>
 
 namespace Debond
 {
-  /// The report of every method.
-  struct SolveResult
+  /// A minimum of J and how it was found, or why it was not.
+  struct Solution
   {
+    /// Adds the iterations of a minimisation that followed, and its end.
+    void
+    add(const Solution &later);
+
     SolverStatus status = SolverStatus::success;
     std::string  message;
 
@@ -49,9 +53,10 @@ namespace Debond
     /// The kind of the minimum, of a success.
     WhichMinimum minimum;
 
-    /// J of the state that the method led to, if search and proof could replace
-    /// it by a lower one, and whether they did.
+    /// J of the state that the method led to, if search and proof on this mesh
+    /// could replace it by a lower one, and whether they did.
     std::optional<double> functional_from_start;
+    bool                  is_searched = false;
     bool                  is_replaced = false;
 
     /// The notes on what did not go as it should without keeping the method
@@ -61,22 +66,22 @@ namespace Debond
     /// Wall seconds by part.
     std::map<std::string, double> parts;
 
-    /// One of them is filled.
+    /// One of them is filled, with iterations numbered from 1 to the end of the
+    /// last minimisation.
     std::vector<BundleIteration>           bundle_history;
     std::vector<MajoriseMinimiseIteration> majorise_history;
   };
 
-  /// Adds what a bundle method has to say.
-  void
-  add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result);
+  /// What a bundle method has to say.
+  Solution
+  solution_of(const ProximalBundleResult &bundle);
 
-  /// Adds iterations after those that the result has.
-  void
-  add_majorise_result(const MajoriseMinimiseResult &minimum,
-                      SolveResult                  &result);
+  /// What majorise-minimise has to say.
+  Solution
+  solution_of(const MajoriseMinimiseResult &minimum);
 
-  /// Makes the functional of a method J, which is more by the energy of what is
-  /// prescribed.
+  /// Makes the functional of a method J, which is more by the @p energy of what
+  /// is prescribed.
   template <typename Result>
   void
   add_energy(const double energy, Result &result)
