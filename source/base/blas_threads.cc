@@ -13,7 +13,9 @@ namespace Debond
     if (std::getenv("OPENBLAS_NUM_THREADS") != nullptr ||
         std::getenv("OMP_NUM_THREADS") != nullptr)
       return;
-    // Which BLAS there is, is decided when the program is loaded.
+    // The BLAS is chosen when the program is loaded, by Debian's alternatives
+    // for instance, so that neither function can be linked by name. dlsym()
+    // finds those that the loaded library happens to have.
     for (const char *name : {"openblas_set_num_threads", "omp_set_num_threads"})
       if (void *const function = dlsym(RTLD_DEFAULT, name); function != nullptr)
         reinterpret_cast<void (*)(int)>(function)(1);

@@ -28,6 +28,10 @@ namespace Debond
     void
     create_plain_file(const std::string &file_name)
     {
+      // boost's lock opens a file by its name and cannot be told how, so that
+      // the checks come before it. O_NOFOLLOW refuses a link, O_NONBLOCK does
+      // not wait at a pipe, and a second hard link would be a file elsewhere
+      // into which the name of this process is written.
       const int descriptor =
         open(file_name.c_str(),
              O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
@@ -50,6 +54,8 @@ namespace Debond
   DirectoryLock::DirectoryLock(const std::string &directory)
     : file_name((std::filesystem::path(directory) / ".lock").string())
   {
+    // The directories that do not exist yet are noted before they are created,
+    // the innermost one first. withdraw() removes these and no others.
     std::error_code error;
     for (std::filesystem::path path(directory);
          path.has_relative_path() && !std::filesystem::exists(path, error);
@@ -63,7 +69,10 @@ namespace Debond
     bool is_refused = false;
     try
       {
-        // Who had it may remove the file between its opening and locking.
+        // The process that held the lock before may remove the file between the
+        // two steps below. The lock taken then is that of a file without a
+        // name, which excludes nobody, and the loop begins again with a new
+        // file.
         do
           {
             create_plain_file(file_name);
@@ -78,6 +87,8 @@ namespace Debond
       }
     if (is_refused)
       {
+        // The holder has written who it is into the file that it locks, and a
+        // lock of this kind does not keep others from reading it.
         std::ifstream file = open_plain_file(file_name);
         std::string   other;
         std::getline(file, other);
@@ -87,11 +98,15 @@ namespace Debond
           "; wait for its end, or give another Output/Directory");
       }
 
-    // Only for the message above. The system takes a lock off a file that its
-    // process closes, so this stays open as long as the lock.
+    // The line is for the message above alone. The system drops all locks that
+    // a process has on a file when that process closes any descriptor of it,
+    // therefore this stream stays open as long as the lock is held.
     holder.open(file_name);
     holder << "process " << getpid() << " on "
            << dealii::Utilities::System::get_hostname() << std::endl;
+    // An interruption ends the program by std::quick_exit(), which calls no
+    // destructor. The handler takes no arguments, so that the name stands in a
+    // variable of the file.
     name_of_lock = file_name;
     std::at_quick_exit([]() { unlink(name_of_lock.c_str()); });
   }
@@ -111,6 +126,8 @@ namespace Debond
   {
     unlink(file_name.c_str());
     file_name.clear();
+    // remove() fails on a directory that is not empty, which is wanted: what
+    // another program has put there stays.
     std::error_code not_empty;
     for (const std::string &directory : created)
       std::filesystem::remove(directory, not_empty);

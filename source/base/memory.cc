@@ -18,6 +18,8 @@ namespace Debond
     dealii::Utilities::System::MemoryStats
     memory_of_process()
     {
+      // deal.II reads /proc/self/status, whose numbers are in units of 1024
+      // bytes. Where there is no such file they are zero.
       dealii::Utilities::System::MemoryStats memory; // in kB
       dealii::Utilities::System::get_memory_stats(memory);
       return memory;
@@ -30,6 +32,9 @@ namespace Debond
     double
     read_limit(const std::string &file_name, const std::string &label)
     {
+      // Without a label the number is the first word of the file, as in those
+      // of control groups. A group without a limit has the word "max" there,
+      // which is no number and therefore counts as infinity.
       std::ifstream file(file_name);
       std::string   word;
       double        value = 0.;
@@ -44,6 +49,8 @@ namespace Debond
   double
   used_memory()
   {
+    // VmRSS is what is in the memory of the machine at this moment. Address
+    // space that has been reserved but not touched is not counted.
     return 1024. * static_cast<double>(memory_of_process().VmRSS);
   }
 
@@ -52,6 +59,7 @@ namespace Debond
   double
   peak_memory()
   {
+    // VmHWM is the largest value that VmRSS has had.
     return 1024. * static_cast<double>(memory_of_process().VmHWM);
   }
 
@@ -60,10 +68,16 @@ namespace Debond
   double
   memory_left(const double limit)
   {
+    // All ranks take the least number, as decisions on methods and meshes
+    // depend on it and have to be the same everywhere. A limit given by the
+    // user is one for each process, from which its present memory is
+    // subtracted.
     if (limit > 0.)
       return least_of_ranks(std::max(0., limit - used_memory()));
     double left = 1024. * read_limit("/proc/meminfo", "MemAvailable:");
-    // Containers, by the two versions of control groups.
+    // MemAvailable is what the kernel would give without swapping. A container
+    // sees that of the whole machine, and its own limit is in one of these
+    // files, depending on the version of its control groups.
     for (const char *file : {"/sys/fs/cgroup/memory.max",
                              "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
       left = std::min(left, read_limit(file, ""));
@@ -79,6 +93,11 @@ namespace Debond
   void
   limit_memory(const double bytes)
   {
+    // The limit is one of address space, so that what is mapped now, libraries
+    // included, is added to it. The conversion of a number beyond the range of
+    // rlim_t would be undefined, hence the bound of 1e18. An allocation beyond
+    // the limit fails, which is an exception with a message and not a signal by
+    // the kernel.
     const auto most = static_cast<rlim_t>(std::min(bytes, 1e18));
     rlimit     limit;
     if (getrlimit(RLIMIT_AS, &limit) != 0)

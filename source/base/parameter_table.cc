@@ -33,6 +33,8 @@ namespace Debond
   Pattern
   quantity(const bool may_be_zero)
   {
+    // Products of up to three quantities, such as a stiffness and a threshold
+    // squared, have to stay within the range of doubles, from 2e-308 to 1e308.
     return may_be_zero ? number("from 1e-100 to 1e100, or 0",
                                 [](double x) {
                                   return x == 0. || (x >= 1e-100 && x <= 1e100);
@@ -47,6 +49,8 @@ namespace Debond
   Pattern
   whole_number(const int smallest, const int largest)
   {
+    // deal.II's patterns decide what matches, but describe themselves in a
+    // notation for programs. The words here are for messages.
     const dealii::Patterns::Integer whole(smallest, largest);
     return Pattern(words("a whole number from ", smallest, " to ", largest),
                    [whole](const std::string &value) {
@@ -103,6 +107,8 @@ namespace Debond
     const std::string                              &path,
     const std::function<void(const std::string &)> &action)
   {
+    // deal.II's handler has a current section in place of paths. It is the root
+    // again afterwards only if the action does not throw.
     std::vector<std::string> sections = split_string_list(path, '/');
     const std::string        name     = sections.back();
     sections.pop_back();
@@ -123,6 +129,10 @@ namespace Debond
                           const std::string &units,
                           const Reader      &reader)
   {
+    // add_action() calls the reader with the default at once, so that the
+    // variable and the table agree from the beginning. The handler keeps what
+    // is printed, and `entries` what it does not know: where a value was set
+    // and whether it was rejected.
     in_section(path, [&](const std::string &name) {
       handler.declare_entry(name,
                             default_value,
@@ -158,6 +168,10 @@ namespace Debond
   ParameterTable::declare_member(const std::string &path,
                                  const std::string &documentation)
   {
+    // The members of a family become entries when the scene names them. Their
+    // default is empty, at which the reader removes the member from the map:
+    // the map has the members with a value and no others. A path with control
+    // characters is declared for no family, since it would be printed later.
     for (const auto &[start, family] : families)
       if (starts_with(path, prefix_of(start)) && printable(path) == path)
         {
@@ -185,6 +199,9 @@ namespace Debond
                       const std::string &value,
                       const std::string &location)
   {
+    // Values are only noted here and taken after everything has been read:
+    // expressions may need constants that are set further down, and a later
+    // value replaces an earlier one without its errors.
     if (entries.count(path) == 0 && !declare_member(path))
       {
         std::vector<std::string> known;
@@ -201,6 +218,9 @@ namespace Debond
     entry.value  = value;
     entry.set_at = location;
     set_paths.push_back(path);
+    // Files that are being read at this moment include each other one within
+    // the other. Each of them has set this value, directly or by what it
+    // includes, and has to set it again if it is included another time.
     for (auto &[unused, file] : read_files)
       if (file.is_open)
         file.values[path] = {{value, location}};
@@ -212,6 +232,12 @@ namespace Debond
   ParameterTable::take_values(
     const std::function<std::string(const std::string &)> &evaluate)
   {
+    // An entry that has been set several times is taken once, with its last
+    // value. Where the pattern asks for more than any text, the evaluated
+    // expression is tried first; a free text, such as a function of x, stays as
+    // it was written. If that is not allowed the other form is tried, so that
+    // an entry for numbers or words accepts both. Errors are of what was
+    // written.
     std::set<std::string> taken;
     for (const std::string &path : set_paths)
       if (taken.insert(path).second)
@@ -226,11 +252,15 @@ namespace Debond
           entry.is_rejected = !reason.empty();
           if (!entry.is_rejected)
             continue;
+          // An operator in a text that could not be evaluated shows that an
+          // expression was meant.
           if (evaluated == written && is_checked &&
               written.find_first_of("*/^(") != std::string::npos)
             reason += "; an expression here has numbers and Constants only";
           errors.push_back(entry.set_at + ": " + path + " = " +
                            shortened(written) + ": " + reason);
+          // The default stands in for the rejected value, so that later checks
+          // look at something valid and find errors of their own.
           entry.value = entry.default_value;
         }
     set_paths.clear();
@@ -243,6 +273,9 @@ namespace Debond
   {
     Entry      &entry = entries.at(path);
     std::string reason;
+    // The exceptions are caught within the section: in_section() would
+    // otherwise not leave it. They are of two kinds, a value that the pattern
+    // does not allow and one that the reader refuses with its own reason.
     in_section(path, [&](const std::string &name) {
       try
         {
@@ -267,7 +300,14 @@ namespace Debond
   void
   ParameterTable::read(std::istream &input, const std::string &file)
   {
+    // The file is read line by line, and the handler's own reader is not used,
+    // for that throws at the first error. Here each error gets a line of its
+    // own with its place, and reading continues, so that the user sees all of
+    // them in one run. A stack of open sections replaces the handler's current
+    // one.
     file_name = file;
+    // The canonical name makes files the same that are included by different
+    // paths.
     std::error_code no_file; // There is none behind /dev/stdin.
     ReadFile       &own =
       read_files[std::filesystem::weakly_canonical(file, no_file)];
@@ -286,10 +326,13 @@ namespace Debond
     unsigned int n_lines = 0, first_line = 1, n_unread = 0;
     for (std::string line; std::getline(input, line);)
       {
-        // Some editors begin a file with the mark of UTF-8.
+        // Some editors begin a file with the byte order mark of UTF-8, which
+        // would be a part of the first keyword.
         if (n_lines++ == 0 && starts_with(line, "\xef\xbb\xbf"))
           line.erase(0, 3);
         line = trim(line);
+        // A backslash at the end continues a line unless there is a comment on
+        // it. Errors refer to the first of the lines that are joined.
         const bool continued =
           boost::ends_with(line, "\\") && line.find('#') == std::string::npos;
         if (starts_with(line, "#include "))
@@ -300,6 +343,8 @@ namespace Debond
           continue;
 
         text = trim(text.substr(0, text.find('#')));
+        // A keyword ends at the first blank. Keywords are compared without
+        // regard to case, names are not.
         std::replace(text.begin(), text.end(), '\t', ' ');
         const std::string at      = words(file, ':', first_line);
         const std::string section = open.back().first;
@@ -308,6 +353,8 @@ namespace Debond
           boost::to_lower_copy(text.substr(0, text.find(' ')));
         const std::string rest   = trim(text.substr(keyword.size()));
         const std::size_t equals = rest.find('=');
+        // A blank of Unicode looks like any other in an editor, but is a part
+        // of a name here. No later message would make the user look for it.
         if (std::smatch match;
             std::regex_search(text, match, std::regex(spaces_of_unicode)))
           errors.push_back(
@@ -316,6 +363,9 @@ namespace Debond
         else if (keyword == "subsection" && !rest.empty())
           {
             const std::string path = prefix + rest;
+            // An unknown subsection is opened all the same, so that the "end"
+            // that belongs to it closes it. It is an error once: neither the
+            // subsections in it nor its entries are errors again.
             open.emplace_back(path, at);
             if (is_known(section) && !is_known(path))
               errors.push_back(at + ": unknown subsection " + shortened(path) +
@@ -327,7 +377,10 @@ namespace Debond
           errors.push_back(at + ": 'end' without an open subsection");
         else if (keyword == "set" && equals != std::string::npos)
           {
-            // What is in an unknown section is not told again.
+            // What an unknown section contains is not reported again. A second
+            // value for an entry in the same file is an error, since one of
+            // both is a mistake; that an included file is overruled is the
+            // purpose of including it.
             const std::string path = prefix + trim(rest.substr(0, equals));
             const auto [earlier, is_first] = set_here.emplace(path, at);
             if (!is_first)
@@ -338,6 +391,8 @@ namespace Debond
           }
         else if (keyword == "include" && !rest.empty() && section.empty())
           {
+            // An included file would silently replace what has been set above
+            // it, so that it has to come first if both set the same entry.
             const auto &included = read_included(rest, file, at);
             for (const auto &[path, earlier] : set_here)
               if (included.count(path) > 0)
@@ -345,6 +400,8 @@ namespace Debond
                                  " again, after " + earlier +
                                  ": put include first");
           }
+        // A file of another kind, such as a mesh, would give an error for each
+        // of its lines.
         else if (!text.empty() && ++n_unread > most_unread)
           {
             errors.push_back(
@@ -375,6 +432,8 @@ namespace Debond
                                 const std::string &file,
                                 const std::string &location)
   {
+    // The path is relative to the folder of the file that includes it, wherever
+    // the program was started.
     const std::filesystem::path path =
       std::filesystem::path(file).parent_path() / name;
     std::ifstream     input = open_plain_file(path);
@@ -388,13 +447,15 @@ namespace Debond
       errors.push_back(error + "the file includes itself");
     else
       {
-        // It is not read again, as files that include others twice would be
-        // 2^n times; its errors are known.
+        // A file that has been read before is not read again, since files that
+        // include others twice each would be read 2^n times. Its values are set
+        // once more, as reading would do, without repeating its errors.
         const std::size_t n_errors = errors.size();
         for (const auto &[entry, value] : known->second.values)
           set(entry, value[0], value[1]);
         errors.resize(n_errors);
       }
+    // read() has set the name to that of the included file.
     file_name = file;
     return read_files[key].values;
   }
@@ -419,6 +480,8 @@ namespace Debond
   std::map<std::string, std::string>
   ParameterTable::locations() const
   {
+    // An entry that has kept its default has no line of its own; messages on it
+    // name the scene.
     std::map<std::string, std::string> result;
     for (const auto &[path, entry] : entries)
       result[path] = entry.set_at.empty() ? file_name : entry.set_at;
@@ -451,6 +514,9 @@ namespace Debond
                          const std::string              &reason,
                          const std::vector<std::string> &others)
   {
+    // An entry that was rejected has its default now. What that default
+    // contradicts is no mistake of the user, who has got a message on the entry
+    // already.
     bool is_known = entries.at(path).is_rejected;
     for (const std::string &other : others)
       is_known |= entries.count(other) > 0 && entries.at(other).is_rejected;
@@ -467,6 +533,8 @@ namespace Debond
                                  const std::string &reason,
                                  const std::string &rejected_for)
   {
+    // A value equals its default as a number too: "1.0" in place of "1" is no
+    // decision that a note should mention.
     const auto is_default = [](const Entry &entry) {
       double a, b;
       return entry.value.empty() || entry.value == entry.default_value ||
@@ -492,6 +560,8 @@ namespace Debond
   void
   ParameterTable::print_json(std::ostream &out)
   {
+    // JSON has no place for families, so that a member with the name NAME
+    // stands for each of them.
     for (const auto &[path, unused] : families)
       declare_member(prefix_of(path) + "NAME");
     handler.print_parameters(out, dealii::ParameterHandler::JSON);

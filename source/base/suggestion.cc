@@ -20,7 +20,10 @@ namespace Debond
     std::size_t
     edit_distance(const std::string &s, const std::string &t)
     {
-      // That of the first i letters of s and j of t.
+      // distance[i][j] is that of the first i letters of s from the first j
+      // letters of t. Each one follows from those of shorter beginnings: the
+      // last letter is deleted, inserted or replaced, or the last two are
+      // exchanged. This takes |s| |t| operations, which is nothing for names.
       std::vector<std::vector<std::size_t>> distance(
         s.size() + 1, std::vector<std::size_t>(t.size() + 1));
       for (std::size_t i = 0; i <= s.size(); ++i)
@@ -44,6 +47,11 @@ namespace Debond
   std::string
   suggestion(const std::string &path, const std::vector<std::string> &known)
   {
+    // Three questions are asked in turn: whether the word stands for something
+    // that the program does not have, whether it is another program's word for
+    // an entry, and whether an entry has nearly the same name. The first one
+    // comes before the others, since a name that looks similar would be a wrong
+    // hint there.
     if (path == "Study")
       return "; this is a study: run scripts/study";
     static const std::map<std::string, std::string> absent = {
@@ -63,15 +71,21 @@ namespace Debond
                ", see 'What the model does not contain' in "
                "doc/guide/manual.md";
 
+    // Case does not count in comparisons, and the section is compared apart
+    // from the name: the same name in another section is a better guess than a
+    // different name in the same one.
     const auto split = [](std::string text) {
       boost::to_lower(text);
       const std::size_t name = text.rfind('/') + 1; // 0 without a section
       return std::make_pair(text.substr(0, name), text.substr(name));
     };
+    // Two letters are part of too many words to mean anything.
     const auto has = [](const std::string &word, const std::string &part) {
       return part.size() > 2 && word.find(part) != std::string::npos;
     };
-    // Other programs have other words.
+    // The words of other programs for cohesive laws and materials are
+    // translated before names are compared. They are regular expressions on the
+    // whole path, in which a name begins after the slash.
     static const std::map<std::string, std::string> synonyms = {
       {"\\bg_?i?c\\b|toughness|critical energy", "Fracture energy"},
       {"\\bcte\\b|/alpha$", "Thermal expansion"},
@@ -93,7 +107,8 @@ namespace Debond
     std::vector<std::string>                                       siblings;
     for (const std::string &other : known)
       {
-        // Of a family the words before NAME count.
+        // The members of a family end in a name that the scene chooses, so that
+        // only the words before it can be compared.
         const bool is_family = boost::ends_with(other, " NAME");
         const auto [its_section, its_name] =
           split(boost::erase_last_copy(other, " NAME"));
@@ -109,6 +124,9 @@ namespace Debond
             path.substr(0, path.rfind('/') + 1))
           siblings.push_back(other);
       }
+    // The order of the tuples is that of the names' distance, then of the
+    // sections' distance, then of the alphabet, so that the suggestions are the
+    // same on each machine.
     std::sort(near.begin(), near.end());
     std::vector<std::string> names;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i)

@@ -7,6 +7,8 @@
 
 namespace Debond
 {
+  // DEBOND_REVISION is written to a header at each build. Including it here
+  // alone means that a new revision compiles one small file.
   const Version version = {DEBOND_VERSION,
                            DEBOND_REVISION,
                            DEAL_II_PACKAGE_VERSION,
