@@ -7,6 +7,8 @@ namespace Debond
   template <int dim>
   BisectedBody<dim>::BisectedBody(const std::shared_ptr<const Body<dim>> &whole)
     : whole(whole)
+    // The order of the members matters: `names` is declared before `bisection`,
+    // whose initialiser fills it.
     , bisection(bisection_of(*whole, names))
   {}
 
@@ -19,6 +21,8 @@ namespace Debond
     , names(coarse.names)
     , bisection(coarse.bisection)
   {
+    // The orders and tags of the simplices are copied with the bisection. A
+    // triangulation of the refined mesh would not have them.
     bisection.refine(times);
   }
 
@@ -28,6 +32,8 @@ namespace Debond
   Bisection<dim>
   BisectedBody<dim>::bisection_of(const Body<dim> &whole, PieceNames &names)
   {
+    // The triangulation is needed only as long as vertices, cells and ids are
+    // read from it.
     dealii::Triangulation<dim> mesh;
     names = whole.make_mesh(mesh);
     return Bisection<dim>(mesh);

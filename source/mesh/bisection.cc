@@ -23,6 +23,8 @@ namespace Debond
     std::uint64_t
     key(const unsigned int a, const unsigned int b)
     {
+      // The ends of an edge in one number, the smaller one in the upper half:
+      // both directions of the edge have the same key.
       return (std::uint64_t{std::min(a, b)} << 32) + std::max(a, b);
     }
 
@@ -33,6 +35,8 @@ namespace Debond
     has_middle(const std::array<unsigned int, n> &vertices,
                const EdgeMiddles                 &middles)
     {
+      // A middle that has been made on any edge of a cell is a hanging node as
+      // long as this cell is not cut there.
       if (middles.empty())
         return false;
       for (unsigned int i = 0; i < n; ++i)
@@ -62,6 +66,11 @@ namespace Debond
     std::array<Simplex, 2>
     halves(const Simplex &cell, const unsigned int middle)
     {
+      // Maubach's rule, with the boundary ids of the faces opposite to the
+      // vertices. A face of a child lies in the face of its parent that is
+      // opposite to the same vertex, if both have that vertex. The face between
+      // the children is inside, and the face opposite to z is the whole face of
+      // the parent opposite to the vertex that the child has lost.
       const unsigned int k = cell.tag;
       const unsigned int last =
         static_cast<unsigned int>(cell.vertices.size()) - 1;
@@ -69,11 +78,15 @@ namespace Debond
       if (cell.cuts_left > 0)
         children[0].cuts_left = children[1].cuts_left = cell.cuts_left - 1;
 
-      // The first one loses x_k; its face opposite x_0 is new.
+      // The first child has z in place of x_k. Its face opposite z is the whole
+      // face opposite x_k and keeps that id at the same position; its face
+      // opposite x_0 is the one between the children.
       children[0].vertices[k]   = middle;
       children[0].boundaries[0] = dealii::numbers::internal_face_boundary_id;
 
-      // The second one loses x_0; its face opposite x_k is new.
+      // The second child begins with x_1, and z is at the position k. Therefore
+      // x_k has moved to k - 1, whose opposite face is the one between the
+      // children, and the face opposite z has the id of the face opposite x_0.
       for (unsigned int i = 0; i < k; ++i)
         {
           children[1].vertices[i]   = cell.vertices[i + 1];
@@ -84,6 +97,8 @@ namespace Debond
       children[1].boundaries[k - 1] =
         dealii::numbers::internal_face_boundary_id;
 
+      // The tag counts down from dim to 1, in dim generations, after which each
+      // edge of a simplex has been halved and the cycle begins anew.
       children[0].tag = children[1].tag = k > 1 ? k - 1 : last;
       return children;
     }
@@ -103,13 +118,19 @@ namespace Debond
         simplex.boundaries.fill(dealii::numbers::internal_face_boundary_id);
         for (unsigned int v = 0; v <= dim; ++v)
           simplex.vertices[v] = cell->vertex_index(v);
-        // deal.II's order of the faces.
+        // deal.II numbers the faces of a triangle by their first vertex and
+        // those of a tetrahedron in an order of its own. The expression is the
+        // vertex opposite to the face f.
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
             simplex.boundaries[dim == 2 ? (f + 2) % 3 : 3 - f] =
               cell->face(f)->boundary_id();
         cells.push_back(simplex);
       }
+    // Twins come first, since neighbours across a cut are found by them. Then
+    // one of three ways gives the cells orders and tags that fit together. The
+    // crossed mesh has them as it is; in 2D any choice of edges will do, and
+    // the longest ones keep angles large.
     find_twins();
 
     if (is_compatible_as_it_is())
@@ -130,6 +151,10 @@ namespace Debond
   void
   Bisection<dim>::find_twins()
   {
+    // Vertices at one place have equal coordinates to the last bit, since a cut
+    // copies them. Sorting therefore brings them together, and the sort is
+    // stable so that the least number stands for all of them. Meshes without a
+    // cut do without the list.
     std::vector<unsigned int> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto is_less = [this](const unsigned int a, const unsigned int b) {
@@ -157,6 +182,9 @@ namespace Debond
   std::vector<typename Bisection<dim>::Neighbours>
   Bisection<dim>::neighbours() const
   {
+    // A face is found from the sorted numbers of its vertices. It waits in the
+    // map for its second cell, and is removed with that, so that the map
+    // contains only the faces between what has been visited and what has not.
     std::map<std::array<unsigned int, dim>, std::array<unsigned int, 2>> open;
     std::vector<Neighbours>                                              result;
     for (unsigned int c = 0; c < cells.size(); ++c)
@@ -182,6 +210,10 @@ namespace Debond
   bool
   Bisection<dim>::is_compatible_as_it_is() const
   {
+    // All cells have the tag 1, so that x_0 x_1 is the edge that is cut first.
+    // A face contains it if the vertex opposite to the face is neither of its
+    // ends, i >= 2. Stevenson's condition for neighbours is checked position by
+    // position, and one violation is enough to try another order.
     for (const auto &[pair, opposite] : neighbours())
       {
         const auto x        = joined(cells[pair[0]].vertices);
@@ -190,8 +222,11 @@ namespace Debond
         const bool has_edge = i >= 2;
         if (has_edge != (j >= 2))
           return false;
-        // Neighbours at a face with the refinement edge share that edge and
-        // differ in one place; at other faces their halves do.
+        // Neighbours whose common face has the refinement edge share it, in any
+        // direction, and differ in the one vertex that is not on the face. At
+        // other faces the children that meet there have to be such neighbours:
+        // the vertex of the edge that is on the face is the same for both, and
+        // so are the vertices from x_2 on.
         if (has_edge ?
               i != j || std::minmax(x[0], x[1]) != std::minmax(y[0], y[1]) :
               x[1 - i] != y[1 - j])
@@ -209,6 +244,8 @@ namespace Debond
   void
   Bisection<dim>::put_longest_edges_first()
   {
+    // The refinement edge of the tag 1 is x_0 x_1, so that the vertex opposite
+    // to the longest edge becomes x_2. Its boundary id moves with it.
     for (Simplex &cell : cells)
       {
         const auto length = [&](const unsigned int a, const unsigned int b) {
@@ -231,6 +268,10 @@ namespace Debond
   bool
   Bisection<dim>::order_by_colours()
   {
+    // A simplex whose vertices are in the order of four colours has neighbours
+    // that differ from it in one position only, which satisfies the condition
+    // with the tag dim. The colouring is found by a walk from cell to
+    // neighbour, breadth first, and takes one visit for each cell.
     std::vector<std::vector<std::array<unsigned int, 2>>> beyond(cells.size());
     for (const auto &[pair, opposite] : neighbours())
       {
@@ -238,8 +279,9 @@ namespace Debond
         beyond[pair[1]].push_back({{pair[0], opposite[0]}});
       }
 
-    // Three vertices have their colours from the neighbour: the fourth one has
-    // no choice.
+    // A neighbour shares all vertices but one with a cell that is coloured
+    // already. The remaining vertex has no choice of colour, so that nothing
+    // has to be tried and taken back.
     constexpr unsigned int    none = dim + 1;
     std::vector<unsigned int> colours(points.size(), none);
     const auto                colour = [&](const unsigned int c) {
@@ -250,16 +292,22 @@ namespace Debond
       for (const unsigned int v : vertices)
         if (colours[v] == none)
           {
+            // The last entry of `used` belongs to vertices without a colour and
+            // is no colour itself.
             const auto free = std::find(used.begin(), used.end() - 1, false);
             if (free == used.end() - 1)
               return false;
             *free = true;
             colours[v] = static_cast<unsigned int>(free - used.begin());
           }
+      // A cell that has been reached on two ways may have one colour twice;
+      // another one is missing then.
       return std::all_of(used.begin(), used.end() - 1, [](const bool u) {
         return u;
       });
     };
+    // Bodies that are not connected through faces are coloured one after the
+    // other.
     std::vector<bool> visited(cells.size(), false);
     for (unsigned int first = 0; first < cells.size(); ++first)
       {
@@ -280,6 +328,8 @@ namespace Debond
           }
       }
 
+    // Vertices and the ids of the faces opposite to them take the positions of
+    // their colours.
     for (Simplex &cell : cells)
       {
         const Simplex before = cell;
@@ -307,7 +357,16 @@ namespace Debond
         cells[c].cuts_left = times[c];
         cells[c].whole     = c;
       }
-    // The middle of an edge is a vertex only until all its cells are cut.
+    // Cells are cut in rounds over all of them, until none has cuts left and
+    // none has the middle of one of its edges as a hanging node. A cell may be
+    // cut several times in the following rounds, since the edge with the middle
+    // need not be its refinement edge. The rounds end by the compatibility of
+    // the orders. Children stand at the place of their parent, so that the
+    // order of cells, and with it all sums over them, follows from the input
+    // alone.
+    //
+    // The middle of an edge remains in the map when all cells around that edge
+    // are cut; no cell has that edge any more.
     EdgeMiddles middles;
     EdgeMiddles joined_middles; // of edges with joined() ends
     for (bool goes_on = true; goes_on;)
@@ -324,7 +383,11 @@ namespace Debond
                 next.push_back(cell);
                 continue;
               }
-            goes_on              = true;
+            goes_on = true;
+            // The middle is the mean of the ends, also on a curved boundary, so
+            // that the P1 space of the coarse mesh is contained in that of the
+            // fine one. On a cut each side has a vertex of its own there, and
+            // the first of them stands for both in `twins`.
             const unsigned int a = cell.vertices[0];
             const unsigned int b = cell.vertices[cell.tag];
             const auto [middle, is_new] =
@@ -360,6 +423,9 @@ namespace Debond
     data.cells.reserve(cells.size());
     for (const Simplex &cell : cells)
       {
+        // deal.II asks for cells of positive volume. The last two vertices are
+        // exchanged in the copy for deal.II alone: the order that bisection
+        // needs stays in `cells`.
         dealii::Tensor<2, dim> edges;
         for (unsigned int d = 0; d < dim; ++d)
           edges[d] = points[cell.vertices[d + 1]] - points[cell.vertices[0]];

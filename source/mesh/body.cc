@@ -10,6 +10,8 @@ namespace Debond
   std::string
   boundary_name(const BoundaryNames &names, const dealii::types::boundary_id id)
   {
+    // An id may have several names, as parts and groups overlap. The name with
+    // the fewest ids says most about the place of an error.
     auto narrowest = names.end();
     for (auto named = names.begin(); named != names.end(); ++named)
       if (named->second.count(id) > 0 &&
@@ -26,6 +28,9 @@ namespace Debond
   std::set<std::string>
   Body<dim>::boundaries() const
   {
+    // The names follow from the description of the body alone, so that a scene
+    // is checked before a mesh is made. A cut has three names: one for each of
+    // its sides and one for both.
     std::set<std::string> names;
     for (const auto &[name, unused] : whole_names().boundaries)
       names.insert(name);
@@ -58,6 +63,9 @@ namespace Debond
   PieceNames
   Body<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
+    // The cuts come before the parts, so that a part may be a piece of an
+    // interface. Both change the ids in the mesh and the names that stand for
+    // them.
     make_whole_mesh(mesh);
     PieceNames names = whole_names();
     if (!cuts.empty())
@@ -71,6 +79,10 @@ namespace Debond
   std::unique_ptr<Body<dim>>
   Body<dim>::coarser() const
   {
+    // Whether a part has a face on the coarser mesh is known only after that
+    // mesh has been made, and then an EntryError says that it has none. The
+    // mesh of the coarser body has about a 2^dim-th of the cells, so that this
+    // costs little.
     if (!cuts.empty())
       return nullptr;
     std::unique_ptr<Body> body = coarser_whole();
@@ -106,6 +118,9 @@ namespace Debond
   bool
   Body<dim>::has_coarse_levels() const
   {
+    // Levels are descriptions without a mesh, so that the whole sequence is
+    // followed at no cost. It is of use only if its last level is small enough
+    // for a factorisation.
     std::unique_ptr<const Body> last;
     for (auto level = coarser_level(); level; level = last->coarser_level())
       last = std::move(level);
@@ -118,6 +133,9 @@ namespace Debond
   LinearFields<dim>
   Body<dim>::linear_fields() const
   {
+    // The general case makes the coarse mesh and looks for the cell of each
+    // point in a tree of boxes. The function keeps both alive. Boxes find the
+    // cell by arithmetic instead.
     const auto mesh = std::make_shared<dealii::Triangulation<dim>>();
     make_whole_mesh(*mesh);
     const auto search = std::make_shared<const CellSearch<dim>>(*mesh);
@@ -138,6 +156,10 @@ namespace Debond
   Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
                            const bool with_own) const
   {
+    // For each level the P1 basis functions of the coarser mesh are evaluated
+    // at the vertices of the finer one, or at the given points for the finest
+    // level. These are the rows of the prolongation. Vertices come in the order
+    // of the level's own mesh.
     std::vector<CoarseLevel<dim>> levels;
     if (!has_coarse_levels())
       return levels;
@@ -154,6 +176,12 @@ namespace Debond
         for (const dealii::Point<dim> &point :
              levels.empty() ? points : levels.back().vertices)
           {
+            // A point beside the coarse mesh, as on the curved side of a finer
+            // one, has negative weights. They are left out, and the others are
+            // scaled so that they sum to one: constants are interpolated
+            // exactly, and the weights are means. Weights are stored in single
+            // precision, which is enough for a preconditioner and halves their
+            // memory.
             double     sum   = 0.;
             const auto found = fields.weights_at(point);
             for (const auto &[unused, weight] : found)

@@ -65,8 +65,10 @@ namespace Debond
               const std::array<unsigned int, 3> &begin,
               const std::array<unsigned int, 3> &n_cells)
   {
-    // First with cells of size 1: the products below do not depend on where
-    // the part begins.
+    // The cells have the size 1 first. Coordinates are whole numbers then, and
+    // their products with the size of a cell do not depend on where the part
+    // begins: ranks that make overlapping parts of a box get the same vertices
+    // to the last bit.
     dealii::Point<dim> first, last;
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -90,6 +92,8 @@ namespace Debond
         return point;
       },
       cells);
+    // The rotation comes after the subdivision: centres are means of corners
+    // with short coordinates then, and each vertex is turned by itself.
     MeshData<dim> crossed = crossed_subdivision(cells);
     if (box.rotation != 0.)
       {
@@ -117,6 +121,12 @@ namespace Debond
         : box(box)
         , rotation(rotation_matrix<dim>(box.rotation))
       {
+        // Places are numbered with the first coordinate running fastest.
+        // Corners, centres of cells and, in 3D, centres of faces have a vertex;
+        // the place in the middle of an edge, with one odd coordinate, has
+        // none. In 2D that is also the middle of a face. The list of numbers
+        // has 2^dim entries for each cell, and the coordinates are those of
+        // part_of_box() but for rounding.
         unsigned int n_places = 1;
         for (unsigned int d = 0; d < dim; ++d)
           n_places *= 2 * box.cells[d] + 1;
@@ -140,8 +150,9 @@ namespace Debond
           }
       }
 
-      /// Simplices have the centre of a cell, in 3D that of a face, and the two
-      /// ends of an edge of the cell.
+      /// Finds the simplex that contains a point without a search. It is
+      /// spanned by the centre of a cell, in 3D the centre of the face that the
+      /// point is nearest to, and the two ends of an edge.
       typename LinearFields<dim>::Weights
       weights_at(const dealii::Point<dim> &point) const
       {
@@ -149,7 +160,13 @@ namespace Debond
           box.rotation == 0. ?
             dealii::Tensor<1, dim>(point) :
             dealii::Tensor<1, dim>(dealii::transpose(rotation) * point);
-        // From the centre of the cell, the faces being at -1 and 1.
+        // In the coordinates t of the cell its centre is at 0 and its faces are
+        // at -1 and 1. The simplex follows from the order of the |t_d|: with
+        // the largest one first, the point lies in the pyramid of that face,
+        // and in 3D in the triangle of that face towards the edge of the second
+        // one. The barycentric coordinates are the differences of successive
+        // |t_d|, beginning with 1 - |t_d| for the centre, and the last one is
+        // divided between the two ends of the edge.
         dealii::Tensor<1, dim>        t;
         Place                         at;
         std::array<unsigned int, dim> by_size;
@@ -168,7 +185,9 @@ namespace Debond
                     return std::abs(t[a]) > std::abs(t[b]);
                   });
         typename LinearFields<dim>::Weights result;
-        double                              left = 1.;
+        // At each step the place moves from a centre to that of a face or edge
+        // of lower dimension, in the direction in which the point lies.
+        double left = 1.;
         for (unsigned int k = 0; k + 1 < dim; ++k)
           {
             const unsigned int d = by_size[k];
@@ -176,6 +195,9 @@ namespace Debond
             left                 = std::abs(t[d]);
             at[d] += t[d] < 0. ? -1 : 1;
           }
+        // The remaining weight is that of the edge along the direction in which
+        // the point is nearest to the centre, at whose ends this coordinate is
+        // -1 and 1.
         const unsigned int along = by_size[dim - 1];
         --at[along];
         result[dim - 1] = {number(at), 0.5 * (left - t[along])};
@@ -220,7 +242,8 @@ namespace Debond
   std::unique_ptr<Body<dim>>
   Box<dim>::coarser_whole() const
   {
-    // Of the directions in which cells can be joined.
+    // The shortest side of the cells is sought among the directions that still
+    // have several cells, since those of one cell cannot be joined any more.
     double shortest = std::numeric_limits<double>::infinity();
     for (unsigned int d = 0; d < dim; ++d)
       if (parameters.cells[d] > 1)
@@ -243,7 +266,9 @@ namespace Debond
   Box<dim>::coarser_level() const
   {
     std::unique_ptr<Body<dim>> coarser = Body<dim>::coarser_level();
-    // Where the thickness has one cell left, others would grow longer.
+    // If the thickness has one cell already, the cells of the other directions
+    // would become longer with each level, and a smoother reduces errors badly
+    // along them.
     if (coarser && stretch<dim>(static_cast<const Box &>(*coarser).parameters) >
                      std::max(most_stretched, 1.1 * stretch<dim>(parameters)))
       return nullptr;

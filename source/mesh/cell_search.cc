@@ -12,6 +12,9 @@ namespace Debond
     const std::array<dealii::Point<dim>, dim + 1> &vertices,
     const dealii::Point<dim>                      &point)
   {
+    // With the edges from vertex 0 as columns of E, the point is x_0 + E xi.
+    // The components of xi are the coordinates of the other vertices, and that
+    // of vertex 0 is what remains to one.
     dealii::Tensor<2, dim> edges; // as columns
     for (unsigned int d = 0; d < dim; ++d)
       for (unsigned int c = 0; c < dim; ++c)
@@ -37,6 +40,9 @@ namespace Debond
     std::vector<dealii::BoundingBox<dim>>
     boxes_of_cells(const dealii::Triangulation<dim> &mesh)
     {
+      // A point on the side of a cell may be beside its box by rounding, as in
+      // turned bodies. The boxes are enlarged by that, relative to the diameter
+      // of the cell.
       std::vector<dealii::BoundingBox<dim>> boxes;
       for (const auto &cell : owned_cells(mesh))
         {
@@ -52,6 +58,8 @@ namespace Debond
   template <int dim>
   CellSearch<dim>::CellSearch(const dealii::Triangulation<dim> &mesh)
     : boxes(boxes_of_cells(mesh))
+    // The tree contains numbers of boxes and keeps a reference to them: it is
+    // initialised after them, and the object cannot be copied.
     , tree(dealii::pack_rtree_of_indices(boxes))
   {
     for (const auto &cell : owned_cells(mesh))
@@ -64,6 +72,11 @@ namespace Debond
   typename CellSearch<dim>::Place
   CellSearch<dim>::operator()(const dealii::Point<dim> &point) const
   {
+    // The depth of a point in a cell is its least barycentric coordinate:
+    // negative outside, and the larger the farther from the sides. Of the cells
+    // whose box contains the point the deepest one counts, and the search ends
+    // at the first one that contains it up to rounding. That takes a time of
+    // the order of log n.
     namespace index          = boost::geometry::index;
     constexpr double nowhere = -std::numeric_limits<double>::max();
     Place            best    = {{}, {}, nowhere};
@@ -82,6 +95,10 @@ namespace Debond
          found != tree.qend() && best.depth < -Tolerance::same_cell;
          ++found)
       look_at(*found);
+    // A point beside all boxes, on the curved side of a finer mesh for
+    // instance, gets the cell whose box is nearest. Its coordinates there
+    // extrapolate by little, and `depth` tells the caller how far outside it
+    // is.
     if (best.depth == nowhere)
       for (auto found = tree.qbegin(index::nearest(point, 1));
            found != tree.qend();

@@ -29,6 +29,9 @@ namespace Debond
               "Crossed subdivision: the coarse mesh has a cell that is no " +
               std::string(dim == 2 ? "quadrilateral." : "hexahedron."));
 
+          // All active cells have to be on the finest level. A coarser one
+          // would be cut from its own corners, and its simplices would not fit
+          // those of its finer neighbours.
           bool hanging_nodes = cell->level() + 1u != coarse.n_levels();
           for (const auto &face : cell->face_iterators())
             hanging_nodes = hanging_nodes || face->has_children();
@@ -71,6 +74,10 @@ namespace Debond
   std::vector<typename CellCrossing<dim>::Corners>
   CellCrossing<dim>::parts(const Corners &face)
   {
+    // A face has dim corners if it is that of a simplex, and in 2D each side is
+    // a line. Only the quadrilaterals of hexahedra, prisms and pyramids are
+    // cut. Their centre is looked up by their sorted corners, so that both
+    // cells at a face get the same vertex.
     if (face.size() == dim)
       return {face};
     std::array<unsigned int, 4> key;
@@ -79,8 +86,9 @@ namespace Debond
     const auto [centre, is_new] = centres.emplace(key, 0);
     if (is_new)
       centre->second = add_centre(face);
-    // Corners are numbered line by line, here they are needed along the
-    // circumference.
+    // deal.II numbers the corners of a quadrilateral line by line, here they
+    // are needed along the circumference. Each triangle has the edge first and
+    // the centre last, which is the order that bisection needs (Bisection).
     const unsigned int c = centre->second;
     return {{face[0], face[1], c},
             {face[1], face[3], c},
@@ -94,6 +102,10 @@ namespace Debond
   std::vector<typename CellCrossing<dim>::Corners>
   CellCrossing<dim>::simplices(const Corners &cell)
   {
+    // The order of the vertices in each simplex is that of Maubach's bisection
+    // with the tag 1: the two ends of an edge of the cell, in 3D the centre of
+    // the face, the centre of the cell. So the first edge to be cut is the
+    // longest one in a cube, and neighbours fit together.
     if (cell.size() == dim + 1)
       return {cell};
     const auto kind = dealii::ReferenceCell::n_vertices_to_type(
@@ -108,6 +120,11 @@ namespace Debond
           face.push_back(cell[kind.face_to_cell_vertices(f, v, 1)]);
         for (Corners &part : parts(face))
           {
+            // The corners of deal.II's faces turn to the left or to the right
+            // as seen from the centre, depending on the number of the face.
+            // Exchanging the ends of the edge makes the volumes positive for
+            // quadrilaterals and hexahedra and does not change how the simplex
+            // is bisected.
             part.push_back(centre);
             if (dim == 2 ? f % 2 == f / 2 : f % 2 == 1)
               std::swap(part[0], part[1]);
@@ -129,6 +146,9 @@ namespace Debond
     CellCrossing<dim> crossing(crossed.vertices);
     for (const auto &cell : coarse.active_cell_iterators())
       {
+        // A simplex of negative volume has a face of the cell on the wrong side
+        // of the centre. The sign also fails the test for coordinates that are
+        // no numbers.
         for (const auto &simplex : crossing.simplices(corners_of(cell)))
           {
             dealii::Tensor<2, dim> edges;
@@ -143,12 +163,15 @@ namespace Debond
                 "faces."));
             crossed.add_cell(simplex, cell->material_id());
           }
-        // Triangulation gives all other faces their ids by itself.
+        // Only faces on the boundary have ids here. Triangulation gives the
+        // faces inside theirs by itself.
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary())
             for (const auto &part : crossing.parts(corners_of(face)))
               crossed.add_face(part, face->boundary_id());
       }
+    // The vertices of a refined coarse mesh may include some that no active
+    // cell has.
     dealii::GridTools::delete_unused_vertices(crossed.vertices,
                                               crossed.cells,
                                               crossed.faces);

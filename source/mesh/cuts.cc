@@ -58,10 +58,15 @@ namespace Debond
           {
             if (cell->face(f)->at_boundary())
               continue;
+            // Each inner face is visited from both of its cells, but only the
+            // visit from the low one counts. For a cut by a condition that is
+            // the cell from which the normal points to the other one, for a cut
+            // between regions the cell in the low region.
             const auto other = cell->neighbor(f);
             for (unsigned int k = 0; k < cuts.size(); ++k)
               {
-                // Of the two sides this one looks from the low cell only.
+                // A cell may belong to several regions, therefore its id is
+                // looked up in the ids that the region has.
                 const auto is_in = [&](const auto        &of,
                                        const std::string &region) {
                   return regions.at(region).count(of->material_id()) > 0;
@@ -76,6 +81,8 @@ namespace Debond
                 const CutFace<dim> face = {k,
                                            vertices_of(cell->face(f)),
                                            {{cell, other}}};
+                // A face in two cuts would have two interfaces at one place,
+                // whose bonds would both act.
                 if (!faces.emplace(cell->face_index(f), face).second)
                   throw std::invalid_argument(cuts[k].text +
                                               " overlaps a cut before it");
@@ -105,6 +112,14 @@ namespace Debond
                 const CutFaces<dim>          &faces,
                 MeshData<dim>                &data)
     {
+      // The cells around the vertex are joined through their faces at it that
+      // are not cut. What remains apart are the bodies that meet there. If the
+      // cells remain one piece, the cut ends at this vertex, which stays common
+      // to both sides: the jump is zero there. Otherwise there must be two
+      // pieces, one with all low sides and one with all high sides, and the
+      // high one gets a new vertex at the same place. Numbers of pieces are
+      // exchanged by a walk over all cells of the vertex, of which there are
+      // few.
       std::map<unsigned int, unsigned int> body; // of a cell, by a cell of it
       for (const auto &cell : cells)
         body[cell->active_cell_index()] = cell->active_cell_index();
@@ -130,6 +145,8 @@ namespace Debond
         return;
       for (const unsigned int face : cut)
         {
+          // If one piece has low and high sides, the cut turns around and no
+          // jump has one sign for it.
           const auto &[low_cell, high_cell] = faces.at(face).cells;
           low.insert(body[low_cell->active_cell_index()]);
           high.insert(body[high_cell->active_cell_index()]);
@@ -145,6 +162,8 @@ namespace Debond
                        data.cells[cell].vertices.end(),
                        vertex,
                        static_cast<unsigned int>(data.vertices.size()));
+      // The place is copied bit by bit, by which Bisection and NodePairs find
+      // that both vertices belong together.
       data.vertices.push_back(place);
     }
   } // namespace
@@ -157,6 +176,11 @@ namespace Debond
                   const PieceNames            &before,
                   dealii::Triangulation<dim>  &mesh)
   {
+    // The mesh is taken apart into arrays, changed there and made anew, since
+    // deal.II cannot separate cells that share a face. All lookups use the old
+    // mesh, whose connections between cells are needed until the end. Only
+    // vertices on a cut are looked at, so that the work is proportional to the
+    // length of the cut beside one pass over all cells.
     const CutFaces<dim> faces = find_faces(cuts, before.regions, mesh);
     MeshData<dim>       data;
     data.vertices = mesh.get_vertices();
@@ -174,6 +198,9 @@ namespace Debond
     for (const auto &[v, cells] : cells_at)
       open_vertex(v, cells, faces, data);
 
+    // The two sides get ids above all that are in use, low and high next to
+    // each other, in the order of the cuts. Such a boundary id is unique to the
+    // side of one cut, which keeps the names of outer boundaries as they are.
     PieceNames                 names = before;
     dealii::types::boundary_id next  = 0;
     for (const auto id : mesh.get_boundary_ids())
@@ -187,7 +214,9 @@ namespace Debond
         names.interfaces.insert(cut.name);
       }
 
-    // The vertices that a cell has now on a face of the mesh.
+    // The vertices that a cell has now on a face of the old mesh. After the
+    // vertices have been opened they differ between the two cells at a cut
+    // face, except at the ends of the cut.
     const auto side = [&data](const auto                      &cell,
                               const std::vector<unsigned int> &face) {
       std::vector<unsigned int> vertices;
@@ -205,6 +234,9 @@ namespace Debond
         const auto id   = first_id + 2 * face.cut;
         const auto low  = side(face.cells[0], face.vertices),
                    high = side(face.cells[1], face.vertices);
+        // Both cells have the same vertices on a face if none of them could be
+        // opened. Such a face would remain inside the mesh, where deal.II does
+        // not accept a boundary id.
         if (std::is_permutation(low.begin(), low.end(), high.begin()))
           throw std::invalid_argument(
             words(cuts[face.cut].text,

@@ -48,6 +48,8 @@ namespace Debond
     void
     share_out(dealii::Triangulation<dim> &mesh, const unsigned int n_ranks)
     {
+      // METIS makes parts of nearly the same size with few faces between them,
+      // by the graph of cells that share a face.
       dealii::GridTools::partition_triangulation(
         n_ranks, mesh, dealii::SparsityTools::Partitioner::metis);
       std::set<dealii::types::subdomain_id> with_cells;
@@ -56,6 +58,9 @@ namespace Debond
       if (with_cells.size() == n_ranks)
         return;
 
+      // The fallback gives each rank a row of cells in the order of the mesh.
+      // With at least as many cells as ranks none is empty. The product is one
+      // of 64 bits, as cells times ranks may exceed 32 bits.
       for (const auto &cell : mesh.active_cell_iterators())
         cell->set_subdomain_id(static_cast<dealii::types::subdomain_id>(
           std::uint64_t{cell->active_cell_index()} * n_ranks /
@@ -70,6 +75,10 @@ namespace Debond
     Description<dim>
     part_of_mesh(dealii::Triangulation<dim> &whole, const MPI_Comm ranks)
     {
+      // All ranks form one group, in which the first rank has the mesh. It
+      // moves that mesh into deal.II's own, describes the part of each rank
+      // with its ghosts, and sends the descriptions. The memory of the whole
+      // mesh is needed on the first rank only.
       const unsigned int n_ranks = number_of_ranks(ranks);
       using dealii::TriangulationDescription::Utilities::
         create_description_from_triangulation_in_groups;
@@ -104,6 +113,10 @@ namespace Debond
                      const unsigned int                 simplex,
                      const dealii::types::subdomain_id  owner)
     {
+      // The cells of a box are numbered with the first direction running
+      // fastest, and the simplices of a cell follow each other: the number is
+      // the place of the simplex in the mesh that make_box() makes as a whole.
+      // deal.II identifies cells of different ranks by it.
       dealii::types::coarse_cell_id number = 0;
       for (unsigned int d = dim; d-- > 0;)
         number = number * box.cells[d] + place[d];
@@ -116,7 +129,11 @@ namespace Debond
       info.manifold_id        = dealii::numbers::flat_manifold_id;
       info.manifold_line_ids.fill(dealii::numbers::flat_manifold_id);
       info.manifold_quad_ids.fill(dealii::numbers::flat_manifold_id);
-      // Its first face is on a side of the cell.
+      // CellCrossing lists the simplices face by face, so that the quotient is
+      // the number of the cell's side, in deal.II's order 0, 1 for x, 2, 3 for
+      // y and 4, 5 for z. These are the ids of the box's sides too. The face on
+      // that side is the first one of the simplex, as its centre is the last
+      // vertex. Faces with ids are listed for ghosts as well.
       const unsigned int side = simplex / (n_simplices<dim> / (2 * dim));
       if (place[side / 2] == (side % 2 == 0 ? 0 : box.cells[side / 2] - 1))
         info.boundary_ids = {{0, side}};
@@ -131,22 +148,33 @@ namespace Debond
     Description<dim>
     part_of_layers(const BoxParameters &box, const MPI_Comm ranks)
     {
-      const std::uint64_t n_ranks     = number_of_ranks(ranks);
-      const unsigned int  rank        = rank_of_this(ranks);
-      const unsigned int  direction   = direction_of_layers<dim>(box);
-      const unsigned int  n_layers    = box.cells[direction];
-      const auto          first_layer = [&](const std::uint64_t owner) {
+      // No rank has the whole box. Each one makes its own layers and the next
+      // one on both sides, removes from the latter the simplices that touch no
+      // vertex of its own, and describes the rest to deal.II by hand. Nothing
+      // is communicated for this: coordinates, numbers and owners follow from
+      // the box alone and are the same on all ranks, to the last bit.
+      const std::uint64_t n_ranks   = number_of_ranks(ranks);
+      const unsigned int  rank      = rank_of_this(ranks);
+      const unsigned int  direction = direction_of_layers<dim>(box);
+      const unsigned int  n_layers  = box.cells[direction];
+      // The smallest layer l with [l n_ranks / n_layers] = owner is owner
+      // n_layers / n_ranks, rounded up. As there are no fewer layers than
+      // ranks, each rank has one.
+      const auto first_layer = [&](const std::uint64_t owner) {
         return static_cast<unsigned int>((owner * n_layers + n_ranks - 1) /
                                          n_ranks);
       };
 
-      // The own ones and one on each side.
+      // The own layers and one on each side of them, if there is one. Simplices
+      // that share a vertex with own ones are in these.
       std::array<unsigned int, 3> begin = {}, n_cells = box.cells;
       begin[direction] = std::max(first_layer(rank), 1u) - 1;
       n_cells[direction] =
         std::min(first_layer(rank + 1) + 1, n_layers) - begin[direction];
       const MeshData<dim> part     = part_of_box<dim>(box, begin, n_cells);
       const auto          place_of = [&](std::size_t simplex) {
+        // part_of_box() numbers its cells as describe_simplex() does, but
+        // within the part.
         simplex /= n_simplices<dim>;
         std::array<unsigned int, 3> place = begin;
         for (unsigned int d = 0; d < dim; ++d)
@@ -161,12 +189,17 @@ namespace Debond
                                          n_ranks / n_layers);
       };
 
+      // The vertices of own simplices. What has one of them is an own simplex
+      // or a ghost.
       std::vector<bool> is_own(part.vertices.size(), false);
       for (std::size_t i = 0; i < part.cells.size(); ++i)
         if (owner_of(i) == rank)
           for (const unsigned int v : part.cells[i].vertices)
             is_own[v] = true;
 
+      // Vertices that remain are numbered in the order in which cells use them.
+      // The cells keep their order, which is the one of the whole mesh, and all
+      // are on one level.
       Description<dim> result;
       result.comm      = ranks;
       result.settings  = dealii::TriangulationDescription::default_setting;
@@ -177,7 +210,10 @@ namespace Debond
       for (std::size_t i = 0; i < part.cells.size(); ++i)
         {
           dealii::CellData<dim> cell = part.cells[i];
-          // Its owner has to know a ghost as well.
+          // A simplex without an own vertex is left out although the layer was
+          // made: its owner does not have a cell of this rank as its ghost
+          // then, and the exchange of unknowns, in which both sides have to
+          // list the same cells, would fail.
           if (std::none_of(cell.vertices.begin(),
                            cell.vertices.end(),
                            [&](const unsigned int v) { return is_own[v]; }))
@@ -212,6 +248,9 @@ namespace Debond
   DistributedMesh<dim>
   make_distributed_mesh(const Body<dim> &body, const MPI_Comm ranks)
   {
+    // On one rank the mesh is a plain Triangulation, which needs no MPI.
+    // Several ranks need deal.II's fully distributed one, as its other
+    // distributed meshes have no simplices or keep the whole mesh on each rank.
     DistributedMesh<dim> result;
     const unsigned int   n_ranks = number_of_ranks(ranks);
     if (n_ranks == 1)
@@ -224,6 +263,8 @@ namespace Debond
     auto mesh =
       std::make_unique<dealii::parallel::fullydistributed::Triangulation<dim>>(
         ranks);
+    // Parts and cuts are found on the whole mesh, and then a box is made by the
+    // first rank as other bodies are.
     const auto *box = dynamic_cast<const Box<dim> *>(&body);
     if (box != nullptr && box->parts.empty() && box->cuts.empty() &&
         box->parameters.cells[direction_of_layers<dim>(box->parameters)] >=
@@ -237,6 +278,9 @@ namespace Debond
         dealii::Triangulation<dim> whole;
         result.names =
           on_first_rank(ranks, [&]() { return body.make_mesh(whole); });
+        // The number of cells is known on the first rank alone. All have to
+        // know it before they throw, so that no rank goes into the collective
+        // call below without the others.
         const unsigned int n_cells =
           dealii::Utilities::MPI::broadcast(ranks, whole.n_active_cells());
         if (n_cells < n_ranks)

@@ -17,6 +17,9 @@ namespace Debond
     std::string
     words_of(const dealii::ExceptionBase &error)
     {
+      // deal.II prints the text of an exception over several indented lines,
+      // which become one line of a message. The range of its pattern for
+      // numbers says nothing to a user.
       std::ostringstream text;
       error.print_info(text);
       std::string       words, line;
@@ -39,6 +42,8 @@ namespace Debond
   {
     if (n_refinements == 0)
       return;
+    // Cells are halved before they are crossed. A mesh of simplices is used as
+    // it is, so that there is no step at which it would be refined.
     if (mesh.all_reference_cells_are_simplex())
       throw std::invalid_argument(
         "A mesh of triangles or tetrahedra is not refined, but one of "
@@ -54,6 +59,9 @@ namespace Debond
                 const std::string &arguments,
                 const unsigned int n_refinements)
   {
+    // The refinement happens before the cells are crossed, with the manifolds
+    // that the generator has attached: new vertices of a curved side are on the
+    // curve.
     auto source = std::make_unique<SourceMesh<dim>>();
     try
       {
@@ -67,6 +75,7 @@ namespace Debond
         throw std::invalid_argument("deal.II's GridGenerator makes no " + name +
                                     " of these arguments: " + words_of(error));
       }
+    // deal.II's generators have numbers in place of names.
     for (const dealii::types::boundary_id id : source->mesh.get_boundary_ids())
       source->names.boundaries[std::to_string(id)] = {id};
     for (const auto &cell : source->mesh.active_cell_iterators())

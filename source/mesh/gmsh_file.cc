@@ -55,6 +55,11 @@ namespace Debond
     bool
     is_old_msh(const std::string &file_name)
     {
+      // Only the beginning of the file is looked at, for what Gmsh takes
+      // without a word of warning: a byte order mark, after which it does not
+      // recognise the format, and groups of .unv files, which it drops.
+      // Versions before 4 store the groups with each element, later ones with
+      // entities.
       std::ifstream input = open_plain_file(file_name);
       if (!input)
         throw std::invalid_argument(file_name + " cannot be read");
@@ -89,6 +94,9 @@ namespace Debond
     check_constants(const std::string                   &file_name,
                     const std::map<std::string, double> &constants)
     {
+      // An assignment in the file overrides a value that was given with
+      // -setnumber, where DefineConstant would take it. The scene's constant
+      // would then change nothing in the mesh.
       if (!boost::iends_with(file_name, ".geo"))
         return;
       std::ifstream input = open_plain_file(file_name);
@@ -112,6 +120,9 @@ namespace Debond
     std::string
     errors_of_gmsh()
     {
+      // Gmsh reports many errors in its log only and continues. Unknown options
+      // and missing libraries for pictures do not change the geometry, so that
+      // files made for a graphical Gmsh are read all the same.
       std::vector<std::string> log, found;
       gmsh::logger::get(log);
       for (const std::string &line : log)
@@ -147,6 +158,12 @@ namespace Debond
     void
     check_size(const int dim, const MeshingOptions &options)
     {
+      // Gmsh would run out of memory in the middle of its work if the cells did
+      // not fit, possibly after a long time. Therefore the number of cells is
+      // estimated before: the geometry is meshed coarsely, with edges of a
+      // twentieth of its extent, and its measure is divided by that of a cell
+      // with edges of the wanted size. Edges longer than a 300th of the extent
+      // need no check.
       const double size = options.size;
       double       x, y, z, end_x, end_y, end_z;
       gmsh::model::getBoundingBox(-1, -1, x, y, z, end_x, end_y, end_z);
@@ -159,12 +176,15 @@ namespace Debond
       gmsh::model::mesh::getJacobians(
         dim == 2 ? 2 : 4, {0., 0., 0.}, matrices, determinants, points);
       gmsh::model::mesh::clear();
-      // Of equilateral triangles and regular tetrahedra, each of which takes
-      // 1000 bytes and more with its part of the matrix.
+      // The measure of a regular cell with edges h is sqrt(3)/4 h^2 = 0.433 h^2
+      // for a triangle and h^3 / (6 sqrt(2)) = 0.118 h^3 for a tetrahedron.
+      // Each cell takes 1000 bytes and more with its part of the matrix.
       const double bytes =
         1000. / (dim == 2 ? 0.433 : 0.118) / std::pow(size, dim);
       double needed = 0.;
       for (const double determinant : determinants)
+        // The determinant of the Jacobian is twice the area of a triangle and
+        // six times the volume of a tetrahedron.
         needed += bytes * std::abs(determinant) / (dim == 2 ? 2. : 6.);
       if (needed > options.memory)
         throw std::invalid_argument(words("cells of Mesh/Size take about ",
@@ -188,14 +208,19 @@ namespace Debond
       std::vector<int>         numbers;
       gmsh::model::mesh::getGhostElements(dimension, entity, ghosts, numbers);
       file.n_ghosts += ghosts.size();
-      // A piece of a partition has the groups of what it is a piece of,
-      // and faces between pieces are none of the file's.
+      // A file of a partitioned mesh has an entity for each piece, and entities
+      // for the faces between pieces. A piece has the groups of the entity that
+      // it is a piece of, and faces between pieces are none of the file's.
+      // Ghost cells are copies of cells of other pieces.
       int of_dimension, whole;
       gmsh::model::getParent(dimension, entity, of_dimension, whole);
       if (whole < 0)
         std::tie(of_dimension, whole) = std::tie(dimension, entity);
       if (!ghosts.empty() || of_dimension != dimension)
         return;
+      // In old files the entities are the groups themselves (see
+      // read_by_gmsh()). A number is negative if the orientation of the group
+      // is reversed, which does not matter here, and 0 stands for no group.
       numbers = {entity};
       if (!is_old)
         gmsh::model::getPhysicalGroupsForEntity(dimension, whole, numbers);
@@ -204,6 +229,9 @@ namespace Debond
         if (const int group = std::abs(number); group != 0)
           gmsh::model::getPhysicalName(dimension, group, groups[group]);
 
+      // Elements are listed by kind, with all nodes of each. Nodes beyond the
+      // corners belong to elements of higher order and come after them, so that
+      // the first n_corners are taken.
       std::vector<int>                      types;
       std::vector<std::vector<std::size_t>> tags, nodes;
       gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
@@ -221,6 +249,8 @@ namespace Debond
                                                   n_nodes,
                                                   unused,
                                                   elements.n_corners);
+          // Corners that are fewer than those of a simplex of this dimension
+          // span no cell.
           if (elements.n_corners <= dimension)
             throw std::invalid_argument(
               words("element ",
@@ -246,6 +276,10 @@ namespace Debond
                  const int             dim,
                  const MeshingOptions &options)
     {
+      // Gmsh is a library with a state of its own, which is set up here in the
+      // child process and never cleared: the process ends with the answer.
+      // Numbers of the scene are given like those of its command line, before
+      // the file is read.
       std::vector<std::string> arguments = {"debond"};
       for (const auto &[name, value] : options.constants)
         append<std::string>({"-setnumber", name, shortest_text(value)},
@@ -261,13 +295,15 @@ namespace Debond
       gmsh::option::setNumber("Mesh.SwitchElementTags", is_old ? 1 : 0);
       // Their partitions are numbers of elements, which it would sort by them.
       gmsh::option::setNumber("Mesh.PartitionConvertMsh2", 0);
-      // What it throws in a thread of its own would end the process.
+      // An exception that Gmsh throws in one of its own threads would end the
+      // process. Without the abort its error is in the log.
       gmsh::option::setNumber("General.AbortOnError", 0);
       gmsh::open(file_name);
       check_log();
       gmsh::vectorpair entities;
       gmsh::model::getEntities(entities);
-      // It goes on, with points of no number and without groups.
+      // If the entities are not one to a line, Gmsh continues with points of
+      // the number 0 and without groups. The first entity is such a point then.
       if (!is_old && !entities.empty() && entities[0] == std::make_pair(0, 0))
         throw std::invalid_argument(
           "Gmsh does not understand the file's entities, each of which has to be a line");
@@ -277,7 +313,9 @@ namespace Debond
       GmshFile            file;
       std::vector<double> unused;
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
-      // The surface of a geometry may be a mesh, from an STL file.
+      // A file has a mesh if there are nodes, or else a geometry that is meshed
+      // here. A .geo file may merge an STL surface, which has nodes already,
+      // and still have a volume without cells.
       std::vector<int> kinds;
       gmsh::model::mesh::getElementTypes(kinds, dim);
       file.is_geometry =
@@ -287,6 +325,8 @@ namespace Debond
       if (!file.is_geometry && options.size > 0.)
         throw std::invalid_argument(
           "the file has a mesh, where Size is for geometries");
+      // The same number as the least and the largest size overrules the sizes
+      // at points that a geometry may have.
       if (file.is_geometry && options.size > 0.)
         {
           if (file.nodes.empty())
@@ -297,6 +337,8 @@ namespace Debond
         gmsh::model::mesh::generate(dim);
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
 
+      // Cells and their faces are read, from all entities of these two
+      // dimensions. Lines and points of a body in 3D are of no use.
       gmsh::model::getEntities(entities);
       for (const auto &[dimension, entity] : entities)
         if (dimension >= dim - 1)
@@ -315,6 +357,9 @@ namespace Debond
                          const int             dim,
                          const MeshingOptions &options)
     {
+      // An error of Gmsh may be of any type, and the log has its words. If the
+      // log is empty as well, an allocation has failed at the limit of memory,
+      // or the format is none that Gmsh knows.
       GmshFile    file;
       std::string error;
       try
@@ -337,6 +382,9 @@ namespace Debond
             error +=
               "; it knows .msh, .unv, .bdf, .nas, .mesh, .vtk, .step, .stp, .brep, .iges, .igs and .stl, and takes files of other endings for .geo";
         }
+      // The answer is serialised as a whole and written in one go. The parent
+      // reads until the end of the pipe, so that neither process waits for the
+      // other one with a full buffer.
       std::ostringstream              text;
       boost::archive::binary_oarchive archive(text);
       archive << error << file;
@@ -353,6 +401,7 @@ namespace Debond
                  const int             dim,
                  const MeshingOptions &options)
   {
+    // What needs no Gmsh is checked before there is a process for it.
     const bool is_old = is_old_msh(file_name);
     check_constants(file_name, options.constants);
     // Gmsh crashes on some broken files, and it changes the locale, the
@@ -364,6 +413,9 @@ namespace Debond
       throw std::runtime_error("there is no process for Gmsh");
     if (child == 0)
       {
+        // The child inherits the parent's handlers of signals, which would
+        // record an interruption for a run that this process does not make.
+        // With the default actions it simply ends.
         for (const int number :
              {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGINT, SIGTERM})
           std::signal(number, SIG_DFL);
@@ -371,6 +423,8 @@ namespace Debond
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent)
           _exit(1);
+        // Gmsh takes any amount of memory. With a limit an allocation fails in
+        // the child, and the parent survives with a message.
         limit_memory(options.memory);
         // Exit in a .geo file calls exit(), where handlers of the parent would
         // wait for its threads for ever.
@@ -383,6 +437,9 @@ namespace Debond
           fdopen(ends[1], "wb"), file_name, is_old, dim, options);
         _exit(0);
       }
+    // The parent closes its copy of the writing end. As long as any process has
+    // it open, reading would not come to an end, not even after the child has
+    // crashed.
     close(ends[1]);
     std::string       bytes;
     std::vector<char> buffer(1 << 16);
@@ -391,6 +448,9 @@ namespace Debond
              std::fread(buffer.data(), 1, buffer.size(), input))
       bytes.append(buffer.data(), n);
     std::fclose(input);
+    // A child that has crashed is distinguished from one that has ended by
+    // itself. One that has sent nothing has met Exit in a .geo file. Only an
+    // archive that is complete is read.
     int status = 1;
     waitpid(child, &status, 0);
     if (status != 0)

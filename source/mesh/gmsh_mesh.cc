@@ -36,6 +36,10 @@ namespace Debond
                const GmshFile    &file)
         : file_name(file_name)
       {
+        // Each step needs what the ones before it have found: cells are joined
+        // and cut into simplices before faces are counted, faces before groups
+        // are attached to them, and the outer faces before anything is looked
+        // for on them.
         read(scale, file);
         check_cells();
         cut_cells();
@@ -51,6 +55,9 @@ namespace Debond
         auto          source = std::make_unique<SourceMesh<dim>>();
         GroupIds      boundary_ids, region_ids;
         MeshData<dim> data;
+        // Quadrilaterals and hexahedra go to deal.II as they are, so that they
+        // can be halved before they are crossed. Any other mesh is one of
+        // simplices, which are those of the file or the pieces of its cells.
         if (is_hypercube)
           for (const Element &cell : cells)
             data.add_cell(cell.corners, region_ids.id(cell.groups));
@@ -72,10 +79,15 @@ namespace Debond
             "taken: sides are straight between them");
         source->names.notes = notes;
 
+        // The centres that the checks have appended to the vertices are used by
+        // no quadrilateral or hexahedron, and go with other unused ones.
         data.vertices = std::move(vertices);
         dealii::GridTools::delete_unused_vertices(data.vertices,
                                                   data.cells,
                                                   data.faces);
+        // deal.II needs positive volumes and, for quadrilaterals and hexahedra,
+        // edges that cells at them direct alike, which files do not promise.
+        // Simplices have been turned already and need no such order.
         if (is_hypercube)
           {
             dealii::GridTools::invert_cells_with_negative_measure(data.vertices,
@@ -141,6 +153,9 @@ namespace Debond
       void
       read(const double scale, const GmshFile &file)
       {
+        // Tags of nodes are any numbers and have gaps, so that vertices are
+        // found in a table. The third coordinate is kept even for plane meshes,
+        // to check that they are in a plane.
         std::unordered_map<std::size_t, unsigned int> vertex_of; // by tag
         std::set<int> ungrouped; // entities of cells
         for (std::size_t i = 0; i < file.nodes.size(); ++i)
@@ -155,6 +170,9 @@ namespace Debond
           }
         for (const GmshFile::Elements &elements : file.elements)
           {
+            // Groups without a name have their number as a name. Groups of
+            // different dimension may have the same number, so that the
+            // dimension is part of the key.
             const bool        is_cell = elements.dimension == dim;
             const std::size_t n       = elements.n_corners;
             Groups            groups;
@@ -174,7 +192,11 @@ namespace Debond
                 Corners corners;
                 for (std::size_t v = 0; v < n; ++v)
                   corners.push_back(vertex_of.at(elements.corners[e * n + v]));
-                // Around a quadrilateral, or line by line.
+                // Gmsh numbers the corners of a quadrilateral along its
+                // circumference, deal.II line by line: the third and the fourth
+                // one are exchanged, at a hexahedron on both sides and at a
+                // pyramid on its base. A tetrahedron and a quadrilateral both
+                // have four corners and differ in dimension.
                 if (n == 8 || n == 5 || (n == 4 && elements.dimension == 2))
                   for (std::size_t v = 0; v + 3 < n; v += 4)
                     std::swap(corners[v + 2], corners[v + 3]);
@@ -182,7 +204,9 @@ namespace Debond
                   .push_back({elements.tags[e], corners, groups});
               }
           }
-        // As Gmsh does when it saves a mesh.
+        // If a geometry has physical groups, its cells in none of them are left
+        // out, as Gmsh does when it saves a mesh. So a .geo file gives the same
+        // body whether it is meshed here or before.
         const std::size_t n          = cells.size();
         const auto        is_grouped = [](const Element &cell) {
           return !cell.groups.empty();
@@ -232,6 +256,9 @@ namespace Debond
                std::string(
                  "; where there are physical groups, Gmsh saves nothing else: add a Physical ") +
                  (dim == 2 ? "Surface" : "Volume")));
+        // Cells are compared by their sorted corners. A file of an old version
+        // lists a cell once for each of its groups; the copies become one cell
+        // in all of these groups.
         std::map<Corners, std::size_t> known;
         std::vector<Element>           different;
         std::set<std::size_t>          kinds;
@@ -261,6 +288,10 @@ namespace Debond
                 most_z  = std::max(most_z, heights[v]);
               }
           }
+        // A mesh of one kind of cell is used as it is if that kind is a
+        // simplex, or a cell that deal.II can halve. A mixture, and prisms and
+        // pyramids, are cut into simplices by their centres, whose faces fit as
+        // all quadrilaterals are cut alike.
         cells        = std::move(different);
         is_hypercube = kinds == std::set<std::size_t>{1u << dim};
         is_cut       = !is_hypercube && kinds != std::set<std::size_t>{dim + 1};
@@ -280,6 +311,10 @@ namespace Debond
         for (std::size_t c = 0; c < cells.size(); ++c)
           for (Corners &corners : crossing.simplices(cells[c].corners))
             {
+              // The volume is that of the simplex divided by the power of its
+              // longest edge from the first corner, so that the test does not
+              // depend on units or on the size of cells. A comparison with !
+              // also refuses coordinates that are no numbers.
               dealii::Tensor<2, dim> edges;
               double                 size = 0.;
               for (unsigned int d = 0; d < dim; ++d)
@@ -308,6 +343,10 @@ namespace Debond
       void
       take_faces()
       {
+        // Each face of a simplex is a side. Sorted by face, two sides at one
+        // face are neighbours in the list, a single one is on the boundary, and
+        // three of them or two on the same side of the face mean that cells
+        // overlap. This needs no map and takes a time of the order of n log n.
         struct Side
         {
           FaceKey     face;
@@ -326,6 +365,11 @@ namespace Debond
             {
               Corners corners(simplex.corners.begin(), simplex.corners.end());
               corners.erase(corners.begin() + v);
+              // The side of the face on which the simplex lies, relative to the
+              // order of its sorted corners: the sign of the permutation that
+              // sorts them, times that of removing the vertex v. All simplices
+              // have a positive volume, so that the two sides of an inner face
+              // differ.
               bool is_left = v % 2 == 1;
               for (unsigned int i = 0; i < dim; ++i)
                 for (unsigned int j = i + 1; j < dim; ++j)
@@ -337,6 +381,9 @@ namespace Debond
           return s + 1 < sides.size() && sides[s + 1].face == sides[s].face;
         };
         for (std::size_t s = 0; s < sides.size(); ++s)
+          // A cell cut into simplices has sides inside as well, at which both
+          // simplices are pieces of the same cell. An overlap there means that
+          // its centre does not see one of its faces.
           if (!is_next(s))
             outside.push_back({sides[s].face, sides[s].cell});
           else if (is_next(s + 1) || sides[s].is_left == sides[s + 1].is_left)
@@ -363,6 +410,10 @@ namespace Debond
           {
             if (face.groups.empty())
               continue;
+            // A face is on the boundary if all pieces that it is cut into are.
+            // `outside` is sorted by face, and a lower bound with the cell 0
+            // finds the entry of that face. The centre of a quadrilateral has
+            // the same number as when the cells were cut.
             const std::vector<Corners> pieces = crossing.parts(face.corners);
             const bool                 is_outside = std::all_of(
               pieces.begin(), pieces.end(), [&](const Corners &piece) {
@@ -378,6 +429,8 @@ namespace Debond
               for (const Corners &piece :
                    is_cut ? pieces : std::vector<Corners>{face.corners})
                 {
+                  // A face may be in several groups, or stand in the file once
+                  // for each of them. Its id is that of the combination.
                   Corners sorted = piece;
                   std::sort(sorted.begin(), sorted.end());
                   Element &outer = outer_faces[sorted];
@@ -404,6 +457,9 @@ namespace Debond
       void
       check_connection() const
       {
+        // The connected sets are kept as trees of cells whose paths are halved
+        // at each search, so that the time is nearly proportional to the number
+        // of faces.
         std::vector<std::size_t> root(cells.size());
         std::iota(root.begin(), root.end(), std::size_t(0));
         const auto find = [&](std::size_t c) {
@@ -440,6 +496,10 @@ namespace Debond
       void
       check_hanging_nodes()
       {
+        // In a mesh whose cells fit together, vertices inside are never on a
+        // face of the boundary, and a hanging node makes the large face and its
+        // halves all unmatched: it is enough to look at boundary vertices near
+        // boundary faces. A tree of the vertices finds them.
         std::set<unsigned int> on_boundary;
         for (const auto &[face, unused] : outside)
           on_boundary.insert(face.begin(), face.end());
@@ -455,6 +515,9 @@ namespace Debond
             std::vector<dealii::Point<dim>> corners;
             for (unsigned int v = 0; v < dim; ++v)
               corners.push_back(vertices[face[v]]);
+            // Lengths that count as zero are relative to the extent of the
+            // face, so that fine cells beside coarse ones are judged by their
+            // own size.
             dealii::BoundingBox<dim> box(corners);
             const auto              &ends = box.get_boundary_points();
             const double             near_by =
@@ -468,6 +531,12 @@ namespace Debond
                 if (std::find(face.begin(), face.end(), candidates[i]) !=
                     face.end())
                   continue;
+                // The length of the normal is the length or twice the area of
+                // the face. A point is on the face if its distance from the
+                // plane, n.(x - a) / |n|, is zero and if the pieces that it
+                // cuts the face into, each with x in place of one corner, have
+                // together the same area; a point beside the face makes the sum
+                // larger.
                 const auto n     = normal(corners);
                 double     least = std::numeric_limits<double>::max(), sum = 0.;
                 for (unsigned int v = 0; v < dim; ++v)
@@ -477,6 +546,9 @@ namespace Debond
                     least = std::min(least, places[i].distance(corners[v]));
                     sum += normal(with_it).norm();
                   }
+                // A vertex at a corner's place is a crack, or bodies that were
+                // not joined. It is no error by itself and is counted for a
+                // note.
                 if (least <= near_by)
                   twins.insert(candidates[i]);
                 else if (std::abs(n * (places[i] - corners[0])) <=
@@ -540,6 +612,7 @@ namespace Debond
                  const double       scale,
                  MeshingOptions     options)
   {
+    // Gmsh works with the lengths of the file, the size is one of the body.
     options.size /= scale;
     return GmshMesh<dim>(file_name,
                          scale,

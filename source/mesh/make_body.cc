@@ -15,12 +15,16 @@ namespace Debond
     if (parameters.source == Source::box)
       return std::make_shared<Box<dim>>(parameters.box);
 
-    // That of a generator is made anew, as manifolds do not survive a copy.
+    // A file is read once, and each mesh is a copy of what was read. The mesh
+    // of a generator is made anew instead, as the manifolds of curved sides do
+    // not survive a copy.
     std::shared_ptr<const SourceMesh<dim>> file;
     if (parameters.source == Source::file)
       file = read_gmsh_mesh<dim>(parameters.file,
                                  parameters.scale,
                                  parameters.meshing);
+    // The body calls this for its own mesh and again, with fewer refinements,
+    // for coarser ones. So the function holds what it needs by value.
     const auto make = [file, parameters](const unsigned int n_refinements) {
       auto source = std::make_unique<SourceMesh<dim>>();
       if (file)
@@ -34,6 +38,8 @@ namespace Debond
         source = generate_mesh<dim>(parameters.generator,
                                     parameters.arguments,
                                     n_refinements);
+      // The rotation comes last: manifolds have placed the vertices of refined
+      // cells before it.
       if (parameters.box.rotation != 0.)
         dealii::GridTools::transform(
           [rotation = rotation_matrix<dim>(parameters.box.rotation)](

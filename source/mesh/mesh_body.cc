@@ -13,6 +13,9 @@ namespace Debond
     , n_refinements(n_refinements)
     , source(make(0))
   {
+    // The source without refinements is kept, for its names, the number of its
+    // cells and its kind of cells. A refinement of simplices throws at once,
+    // before anything else is made of the body.
     this->inner_groups = source->inner_groups;
     if (source->mesh.all_reference_cells_are_simplex() && n_refinements > 0)
       make(n_refinements); // says that they are not halved
@@ -24,6 +27,8 @@ namespace Debond
   double
   MeshBody<dim>::n_cells() const
   {
+    // The number follows without the refined mesh, in floating point: what a
+    // user asks for may exceed any integer, and is refused by this number then.
     const double n = source->mesh.n_active_cells();
     return source->mesh.all_reference_cells_are_simplex() ?
              n :
@@ -39,7 +44,9 @@ namespace Debond
     if (source->mesh.all_reference_cells_are_simplex())
       {
         mesh.copy_triangulation(source->mesh);
-        // Sides are flat between the vertices, wherever they came from.
+        // All sides are flat between the vertices, wherever these came from:
+        // the elements are affine, and no point may be moved to a curve
+        // afterwards.
         mesh.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
       }
     else
@@ -56,6 +63,8 @@ namespace Debond
   {
     if (n_refinements == 0)
       return nullptr;
+    // The copy shares the source. Parts have to be named anew on the coarser
+    // mesh, which Body::coarser() does.
     auto coarser = std::make_unique<MeshBody>(*this);
     --coarser->n_refinements;
     coarser->parts.clear();

@@ -26,6 +26,9 @@ namespace Debond
       Id
       id(const Id old, const std::set<std::string> &in)
       {
+        // What is in no part keeps its id. Each combination of an old id and
+        // parts that occurs gets one new id, so that a name stands for a set of
+        // ids and parts may overlap without order.
         const auto [entry, is_new] = divided.emplace(std::pair(old, in), old);
         if (is_new && !in.empty())
           entry->second = next_id++;
@@ -36,6 +39,8 @@ namespace Debond
       Names
       names(const Names &before) const
       {
+        // An old name stands now for all ids that its own have been divided
+        // into, and the name of a part for all combinations that contain it.
         Names result;
         for (const auto &[piece, id] : divided)
           {
@@ -63,6 +68,8 @@ namespace Debond
     bool
     is_cut(const Part<dim> &part, const Iterator &object)
     {
+      // The centre decides where a face belongs. This only finds out whether
+      // the user should know that the part is not a union of faces.
       const bool inside = part.contains(object->center());
       for (const unsigned int v : object->vertex_indices())
         if (part.contains(object->vertex(v) +
@@ -100,6 +107,8 @@ namespace Debond
              const PieceNames             &before,
              dealii::Triangulation<dim>   &mesh)
   {
+    // The mesh has the ids before the division; what is in parts gets ids above
+    // them.
     std::set<dealii::types::boundary_id> boundary_ids;
     std::set<dealii::types::material_id> material_ids;
     for (const auto &cell : mesh.active_cell_iterators())
@@ -110,6 +119,9 @@ namespace Debond
     Division<dealii::types::material_id, RegionNames>   cells(material_ids);
 
     std::vector<unsigned int> n_inside(parts.size(), 0), n_cut(parts.size(), 0);
+    // A cell is asked about parts of the body, a face about those of its own
+    // boundary. Each of them is counted: a part without a face is an error, and
+    // one whose edge cuts faces has a note.
     const auto parts_of = [&](const auto &object, const auto &may_be_in) {
       std::set<std::string> in;
       for (std::size_t p = 0; p < parts.size(); ++p)
@@ -133,6 +145,8 @@ namespace Debond
                      return part.boundary.empty();
                    })));
         for (const auto &face : cell->face_iterators())
+          // A face on the boundary belongs to one cell, so that it is divided
+          // once although all cells are visited.
           if (face->at_boundary())
             face->set_boundary_id(
               faces.id(face->boundary_id(),
@@ -150,7 +164,10 @@ namespace Debond
     for (std::size_t p = 0; p < parts.size(); ++p)
       {
         const std::string kind = parts[p].boundary.empty() ? "cell" : "face";
-        const bool        is_of_all = parts[p].boundary == whole_boundary &&
+        // A part of all outer faces names no boundary that would tell where it
+        // is; the numbers of faces and, if there is none, the extent of the
+        // body show whether the condition was meant so.
+        const bool is_of_all = parts[p].boundary == whole_boundary &&
                                before.boundaries.count(whole_boundary) == 0;
         if (n_inside[p] == 0)
           throw EntryError("Parts/" + parts[p].name,
