@@ -19,6 +19,9 @@ namespace Debond
                  const std::set<dealii::types::boundary_id> &boundaries,
                  const BoundaryNames                        &names)
   {
+    // Faces are flat, so that one quadrature point has the normal, and its JxW
+    // is the measure of the face. Only own cells know their boundary ids: a
+    // ghost's outer face has the id 0, whatever it is.
     const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
     const auto                  &fe = dofs.get_fe();
     dealii::FEFaceValues<dim>    fe_values(mapping,
@@ -38,8 +41,12 @@ namespace Debond
             fe_values.reinit(cell, f);
             cell->get_dof_indices(cell_dofs);
             BoundaryFace<dim> face;
-            face.cell    = cell->id().get_coarse_cell_id();
-            face.id      = cell->face(f)->boundary_id();
+            face.cell = cell->id().get_coarse_cell_id();
+            face.id   = cell->face(f)->boundary_id();
+            // A node has dim unknowns in succession, so that the first of them
+            // stands for the node. face_to_cell_index() lists vertices before
+            // the middles of edges, in the order of the reference face, which
+            // is that of simplex_edges.
             face.n_nodes = fe.n_dofs_per_face(f) / dim;
             face.measure = fe_values.JxW(0);
             face.normal  = fe_values.normal_vector(0);
@@ -53,8 +60,11 @@ namespace Debond
               }
             faces.push_back(face);
           }
-    // Ranks number the cells of their meshes as they like, but their ids are
-    // the places in the whole mesh.
+    // All ranks get all faces, as laws, search and proof work on the whole
+    // contact boundary. Ranks number the cells of their meshes as they like,
+    // but the coarse ids are the places in the whole mesh; sorted by them the
+    // list is the same on all ranks and for any number of them. The sort is
+    // stable, as a cell may have several faces.
     if (const MPI_Comm ranks = dofs.get_communicator();
         number_of_ranks(ranks) > 1)
       {
@@ -68,6 +78,7 @@ namespace Debond
                            return a.cell < b.cell;
                          });
       }
+    // Whether a boundary is missing is known only from the faces of all ranks.
     for (const BoundaryFace<dim> &face : faces)
       missing.erase(face.id);
     if (!missing.empty())

@@ -10,6 +10,9 @@ namespace Debond
                           const std::vector<BasisRow<dim>> &rows,
                           const unsigned int                n_nodes)
   {
+    // Only a few nodes have rows. A table from node to row makes find() a
+    // lookup, for cells ask at each of their nodes; a step without rows needs
+    // no table.
     Step &own = steps[static_cast<unsigned int>(step)];
     own.rows  = rows;
     own.row_of_node.assign(rows.empty() ? 0 : n_nodes,
@@ -26,6 +29,8 @@ namespace Debond
   {
     if (rows.empty())
       return;
+    // Only the unknowns that the cell has now are asked for. What they depend
+    // on is appended once, as whole nodes, behind the nodes of the cell itself.
     const std::size_t n = cell_dofs.size();
     for (std::size_t i = 0; i < n; i += dim)
       if (const auto *row = find(static_cast<unsigned int>(cell_dofs[i] / dim)))
@@ -53,12 +58,20 @@ namespace Debond
   ChangeOfBasis<dim>::to_unknowns(Dofs                       &cell_dofs,
                                   dealii::FullMatrix<double> &matrix) const
   {
+    // K becomes T_k' K T_k for one step k after the other, from nodal values
+    // towards the unknowns, the order in which u = T_1 T_2 T_3 x asks for it.
+    // At a node with a row, u = to_nodal x + sum of weight u(other), so that
+    // the transposed step adds weight times the node's rows of K to those of
+    // the others and multiplies its own by to_nodal'. The columns have the same
+    // from the other side.
     for (const Step &step : steps)
       {
         step.add_others(cell_dofs);
         const auto n = static_cast<unsigned int>(cell_dofs.size());
         if (n > matrix.m())
           {
+            // The unknowns of other cells have no entries in this cell's matrix
+            // before the step fills them.
             const dealii::FullMatrix<double> of_cell = matrix;
             matrix.reinit(n, n);
             matrix.fill(of_cell);
@@ -66,12 +79,17 @@ namespace Debond
         for (unsigned int i = 0; i < n; i += dim)
           if (const auto *row =
                 step.find(static_cast<unsigned int>(cell_dofs[i] / dim)))
+            // Rows first and then columns: the second pass sees the rows that
+            // the first one has changed, which makes the product from both
+            // sides.
             for (const bool are_rows : {true, false})
               for (unsigned int j = 0; j < n; ++j)
                 {
                   const auto entry = [&](const std::size_t k) -> double & {
                     return are_rows ? matrix(k, j) : matrix(j, k);
                   };
+                  // A copy of the dim entries, since the node's own ones are
+                  // overwritten while they are still needed.
                   dealii::Tensor<1, dim> nodal;
                   for (unsigned int d = 0; d < dim; ++d)
                     nodal[d] = entry(i + d);
@@ -84,6 +102,8 @@ namespace Debond
                       for (unsigned int d = 0; d < dim; ++d)
                         entry(k + d) += weight * nodal[d];
                     }
+                  // A vector times the matrix from the right is the transposed
+                  // matrix times the vector, to_nodal' K.
                   nodal = nodal * row->to_nodal;
                   for (unsigned int d = 0; d < dim; ++d)
                     entry(i + d) = nodal[d];
@@ -97,6 +117,10 @@ namespace Debond
   DofVector
   ChangeOfBasis<dim>::sizes_of_terms(DofVector sizes) const
   {
+    // At a first node u_first = +-[u] + u_second: the jump is a difference of
+    // two displacements that may be much larger than it. Terms in the unknowns
+    // are as large as |u_first| + 2 |u_second|, whatever cancels in their sum.
+    // Frames change sizes by little.
     for (const BasisRow<dim> &row : rows(BasisStep::jumps))
       set_at(sizes, row.node, at(sizes, row.node) + 2. * others(sizes, row));
     return sizes;
@@ -108,6 +132,8 @@ namespace Debond
   DofVector
   ChangeOfBasis<dim>::rounding_of_forces(DofVector rounding) const
   {
+    // The force on the displacement of a second node is that of both nodes
+    // together, and so is its rounding.
     for (const BasisRow<dim> &row : rows(BasisStep::jumps))
       for (const auto &[other, weight] : row.others)
         set_at(rounding,

@@ -25,6 +25,11 @@ namespace Debond
     join_faces(const std::vector<dealii::Tensor<1, dim>> &normals,
                const double                               degrees)
     {
+      // Each face begins as a group of its own, and whenever a pair of faces of
+      // different groups has nearly the same normal, one group takes over the
+      // other. A vertex has few faces, so that all pairs are compared. The
+      // result is the connected components of that relation, whatever the order
+      // of the faces.
       const double cosine = std::cos(degrees * dealii::numbers::PI / 180.);
       std::vector<unsigned int> groups(normals.size());
       std::iota(groups.begin(), groups.end(), 0u);
@@ -45,6 +50,10 @@ namespace Debond
     const std::vector<double>                 &face_measures)
     : groups(join_faces(face_normals, 31.4))
   {
+    // The mean is weighted by the measures, not by angles: it has the direction
+    // of the integral of the normal over the group. A face more than 84 degrees
+    // from the mean, with a cosine below 0.1, shows that the group bends around
+    // a tip. Such a group is taken apart.
     std::vector<dealii::Tensor<1, dim>> sums(groups.size());
     for (unsigned int f = 0; f < groups.size(); ++f)
       sums[groups[f]] += face_measures[f] * face_normals[f];
@@ -53,6 +62,9 @@ namespace Debond
       if (face_normals[f] * sums[groups[f]] < 0.1 * sums[groups[f]].norm())
         apart.insert(groups[f]);
 
+    // The groups are numbered in the order in which their first faces come. The
+    // faces of a group that is taken apart stand for themselves, with their own
+    // number in place of the group's.
     std::map<unsigned int, unsigned int> numbers;
     for (unsigned int f = 0; f < groups.size(); ++f)
       {
@@ -68,6 +80,10 @@ namespace Debond
       }
     for (auto &normal : normals)
       {
+        // Components of the order of rounding become exact zeros, and the
+        // vector is normalised again. A side along an axis then has a unit
+        // vector as its normal, for which no frame is needed and nothing is
+        // rounded.
         normal /= normal.norm();
         for (unsigned int d = 0; d < dim; ++d)
           if (std::abs(normal[d]) < Tolerance::zero_in_normal)
@@ -84,6 +100,10 @@ namespace Debond
   {
     AssertIndexRange(normals.size() - 1, dim);
 
+    // The normals are the first rows, exactly as they are given. The remaining
+    // rows complete them to a basis: they are orthonormal to each other and to
+    // all normals, so that in a frame with one normal the inverse is the
+    // transpose.
     dealii::Tensor<2, dim> frame;
     for (unsigned int i = 0; i < normals.size(); ++i)
       frame[i] = normals[i];
@@ -99,7 +119,10 @@ namespace Debond
       {
         if (normals.size() == 1)
           {
-            // The axis farthest from the normal gives the first tangent.
+            // The first tangent is the projection of the axis that is farthest
+            // from the normal, whose length is at least sqrt(2/3). Any other
+            // axis could be nearly parallel to the normal and would lose
+            // digits.
             unsigned int axis = 0;
             for (unsigned int d = 1; d < dim; ++d)
               if (std::abs(n[d]) < std::abs(n[axis]))
@@ -108,6 +131,10 @@ namespace Debond
             frame[1][axis] += 1.;
             frame[1] /= frame[1].norm();
           }
+        // The cross product is orthogonal to the first two rows. With two
+        // normals its length is the sine of the angle between them, which is
+        // zero if they are opposite: then it stays zero, and the determinant
+        // below is zero too.
         if (normals.size() <= 2)
           {
             frame[2] = dealii::cross_product_3d(n, frame[1]);

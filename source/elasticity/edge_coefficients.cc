@@ -8,6 +8,11 @@ namespace Debond
   std::vector<BasisRow<dim>>
   edge_coefficients(const std::vector<BoundaryFace<dim>> &contact)
   {
+    // On an edge with the ends a, b the quadratic polynomial is l_a^2 u_a + 2
+    // l_a l_b c + l_b^2 u_b, whose value in the middle is (u_a + 2 c + u_b) /
+    // 4. This is the row of the step, u(middle) = c / 2 + (u_a + u_b) / 4, for
+    // each component of the displacement. An edge of two contact faces has it
+    // once.
     std::set<unsigned int>     middles;
     std::vector<BasisRow<dim>> rows;
     for (const BoundaryFace<dim> &face : contact)

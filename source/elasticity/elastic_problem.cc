@@ -19,7 +19,12 @@ namespace Debond
     make_pattern(const ElasticUnknowns<dim> &unknowns,
                  dealii::SparsityPattern    &pattern)
     {
-      // Rows of a node are alike.
+      // The dim unknowns of a node couple with the same nodes, so that the
+      // pattern is found for nodes, which takes a dim^2-th of the work and of
+      // the memory of the dynamic pattern. Constrained rows and columns are
+      // left out in the end. All active cells are visited, the ghosts as well:
+      // every cell with an own node is among them, therefore the rows of own
+      // nodes are complete without communication.
       const auto                    &dofs    = unknowns.dof_handler();
       const unsigned int             n_nodes = unknowns.n_dofs() / dim;
       dealii::DynamicSparsityPattern neighbors(n_nodes, n_nodes);
@@ -30,10 +35,14 @@ namespace Debond
         for (const auto node : of_cell)
           neighbors.add_entries(node, of_cell.begin(), of_cell.end(), true);
       };
-      // Of interfaces, which other ranks may not have.
+      // Cells at first nodes of pairs couple with the second nodes, whose rank
+      // may have no cell at the first ones. Such cells are sent to all ranks,
+      // each by its owner.
       std::vector<std::vector<dealii::types::global_dof_index>> glued;
       for (const auto &cell : dofs.active_cell_iterators())
         {
+          // get_dof_indices() asks for the exact size, and the cell before may
+          // have been glued.
           cell_dofs.resize(dofs.get_fe().dofs_per_cell);
           cell->get_dof_indices(cell_dofs);
           const std::size_t n_own = cell_dofs.size();
@@ -48,12 +57,20 @@ namespace Debond
         }
       if (!unknowns.pairs().empty())
         {
+          // Every rank takes part in this exchange if there is a pair anywhere,
+          // as all of them know all pairs. It adds what it has not seen, and
+          // adding an entry twice does no harm.
           for (const auto &of_rank :
                dealii::Utilities::MPI::all_gather(unknowns.communicator(),
                                                   glued))
             std::for_each(of_rank.begin(), of_rank.end(), add);
-          // Bonds couple jumps of neighbours, which belong to different bodies
-          // where supports have exchanged the nodes of a pair.
+          // Some methods add the second derivative of the bonds' energy to A,
+          // and its entries need a place in the pattern. On a foundation the
+          // nodes of a contact face are coupled by their cell. Jumps of
+          // neighbours belong to different bodies if supports have exchanged
+          // the nodes of one of two pairs, and then no cell has both. All nodes
+          // of each contact face are coupled, the tangents of held vertices
+          // included.
           const ContactBoundary<dim> &boundary = unknowns.contact().boundary();
           for (const auto &face : boundary.faces)
             {
@@ -73,6 +90,10 @@ namespace Debond
             }
         }
 
+      // A SparsityPattern needs the lengths of its rows beforehand. Rows of
+      // other ranks and constrained rows have only the diagonal entry that
+      // deal.II stores first in each row of a square matrix. This costs one
+      // entry for each unknown, and indices are global without any translation.
       const dealii::IndexSet   &own = dofs.locally_owned_dofs();
       std::vector<unsigned int> lengths(own.size(), 1);
       for (const auto row : own)
@@ -82,6 +103,8 @@ namespace Debond
       std::vector<dealii::types::global_dof_index> columns;
       for (const auto row : own)
         {
+          // The columns of a node's rows are the same, and are listed once for
+          // all of them.
           if (row % dim == 0)
             {
               columns.clear();
@@ -110,6 +133,12 @@ namespace Debond
                  const dealii::SymmetricTensor<4, 3> &stiffness,
                  dealii::FullMatrix<double>          &cell_matrix)
     {
+      // The weak form int C eps(v) : eps(u) with shape functions for v and u,
+      // for one node and component after the other. An orthotropic material, or
+      // the hoop strain u_r / r, needs the tensor of the solid: column j is the
+      // stress C eps(phi_j) times the weight, and its rows are the forces of
+      // that stress on all nodes. The strain across a plane body is zero here,
+      // and plane stress is in the tensor.
       cell_matrix = 0.;
       if (material.orthotropy || values.has_axis())
         {
@@ -129,7 +158,12 @@ namespace Debond
               }
           return;
         }
-      // An isotropic material needs far fewer products.
+      // With an isotropic tensor the entry for the components c of node k and d
+      // of node l is
+      // lambda d_c phi_k d_d phi_l + mu d_d phi_k d_c phi_l
+      //   + mu delta_cd grad phi_k . grad phi_l,
+      // which needs far fewer products than the tensor. In plane stress lambda
+      // is that of the plane problem.
       const double lambda = material.template lame_lambda<dim>();
       const double mu     = material.shear_modulus();
       for (const unsigned int q : values.quadrature_point_indices())
@@ -157,6 +191,10 @@ namespace Debond
                     const dealii::SparsityPattern        &sparsity,
                     const dealii::types::global_dof_index row)
     {
+      // deal.II stores the diagonal entry first and the other columns of a row
+      // in increasing order, so that the search is among the entries from 1 on.
+      // If the diagonal's column is below the one sought it counts as well,
+      // though it is stored elsewhere.
       unsigned int below = 0, length = sparsity.row_length(row) - 1;
       while (length > 0)
         {
@@ -178,10 +216,16 @@ namespace Debond
                                 const Loads<dim>         &loads,
                                 const Loads<dim>         &dead_loads)
   {
+    // Everything that can fail on one rank alone (a load that is not finite at
+    // a point of that rank, for instance) is done within on_all_ranks(), here
+    // or in load_vector(), and no rank communicates within it. So all ranks
+    // leave this function in the same way, and none waits for another one.
     const dealii::DoFHandler<dim> &dofs = elastic_unknowns.dof_handler();
     const dealii::AffineConstraints<double> &constraints =
       elastic_unknowns.constraints();
 
+    // transformed() calls the function for the material of each region, which
+    // is used here for what it throws.
     materials.transformed([](const Material &material) {
       material.validate<dim>();
       return true;
@@ -197,6 +241,11 @@ namespace Debond
                                          heat_is_dead ? dead_loads : loads,
                                          dofs.get_fe().degree);
     });
+    // Forces are Cartesian nodal forces at all degrees of freedom, also at
+    // those that supports prescribe: their reactions are found from them. Dead
+    // loads are apart, since they do not grow with the load factor. A change of
+    // temperature is a load as well, int C alpha theta : eps(v), and belongs to
+    // one of both sets.
     applied_forces = load_vector(dofs, loads, symmetry, &notes);
     if (dead_loads.body_force || !dead_loads.tractions.empty() || heat_is_dead)
       dead_forces = load_vector(dofs, dead_loads, symmetry, &notes);
@@ -207,6 +256,8 @@ namespace Debond
                          symmetry,
                          heat_is_dead ? dead_forces : applied_forces);
     });
+    // Each rank has integrated over its own cells and their faces. The sums are
+    // completed here, once for each vector.
     notes = union_of_ranks(notes, ranks);
     add_over_ranks(applied_forces, ranks);
     if (dead_forces.size() > 0)
@@ -221,6 +272,11 @@ namespace Debond
                                                           dead_forces,
                                                           heat_is_dead);
 
+    // The load on the unknowns w in u = w + G is f - A G, which is minus the
+    // residual A u - f at w = 0. It is taken from the strains of the lifting in
+    // the cells, so that A needs no entries for constrained columns. At
+    // constrained degrees of freedom the residual has reactions, which are no
+    // load.
     const auto load_with = [&](const LoadFactors factors) {
       DofVector load =
         elastic_fields->residual(DofVector(dofs.n_dofs()), factors);
@@ -228,6 +284,10 @@ namespace Debond
       constraints.set_zero(load);
       return load;
     };
+    // load() returns f_0 + t f_1 + d f_2 for the factors t of loads and d of
+    // prescribed displacements. The residual is affine in both factors. With
+    // the load at factors (0, 0), f_0, that at (0, 1), f_0 + f_2, and the whole
+    // one at (1, 1), all others follow without another loop over the cells.
     f_0.reinit(0);
     f_2.reinit(0);
     if (elastic_unknowns.has_gap() || dead_forces.size() > 0)
@@ -238,12 +298,17 @@ namespace Debond
         if (f_0.size() > 0)
           f_2 -= f_0;
       }
+    // Without a lifting the load is that of the forces alone, and no strains
+    // are computed.
     if (elastic_unknowns.has_lifting())
       whole_load = load_with(1.);
     else
       whole_load = elastic_unknowns.basis().forces_to_unknowns(applied_forces);
     constraints.set_zero(whole_load);
 
+    // The matrix is released before its pattern changes, since it keeps a
+    // reference to that. The copy for several ranks is made anew when it is
+    // asked for.
     system_matrix.clear();
     distributed.reset();
     make_pattern(elastic_unknowns, sparsity);
@@ -257,6 +322,11 @@ namespace Debond
   void
   ElasticProblem<dim>::add_cell_matrices()
   {
+    // Each rank computes the matrices of all cells that it has, ghosts
+    // included, and keeps the rows of its own nodes. The cells along the border
+    // of a rank are computed twice, but no entry is sent and the sum of each
+    // row is complete at the end of the loop. A matrix of a cell is T' K T,
+    // with K for Cartesian nodal values and T the change of basis.
     const auto                &dofs = elastic_unknowns.dof_handler();
     SimplexValues<dim>         values(dofs.get_fe().base_element(0),
                               strain_rule<dim>(elastic_unknowns.degree()),
@@ -265,9 +335,16 @@ namespace Debond
     dealii::FullMatrix<double> cell_matrix;
     std::vector<dealii::types::global_dof_index> cell_dofs;
     std::vector<char>                            is_free;
-    // The own rows of some of the nodes. Where the columns of a node
-    // are in one row of another one they are in all its rows, but for the
-    // diagonal entry, which is the first and in constrained rows the only one.
+    // Adds the rows of the nodes from `begin` to `end` to those of A, if they
+    // are own ones. The usual AffineConstraints::distribute_local_to_global()
+    // would sort the unknowns of each cell and look for each entry, which takes
+    // about half of the assembly. Here the place of a node's columns is found
+    // by one binary search for all dim rows of another node: if its columns are
+    // in one of these rows they are in all of them, next to each other, but for
+    // the diagonal entry, which is stored first and in constrained rows is the
+    // only one. Constrained rows and columns are skipped apart from their
+    // diagonal, which sums up the cells' own entries: a positive number of the
+    // right size.
     const auto add_rows = [&](const unsigned int begin,
                               const unsigned int end) {
       is_free.resize(cell_dofs.size());
@@ -277,6 +354,9 @@ namespace Debond
         {
           if (!dofs.locally_owned_dofs().is_element(cell_dofs[k]))
             continue;
+          // Any row of the node that is not constrained shows where the columns
+          // are. If all are constrained, only diagonal entries are written, and
+          // the place found does not matter.
           unsigned int a_row = k;
           while (!is_free[a_row] && a_row + 1 < k + dim)
             ++a_row;
@@ -286,12 +366,18 @@ namespace Debond
                 n_columns_below(cell_dofs[l], sparsity, cell_dofs[a_row]);
               for (unsigned int i = k; i < k + dim; ++i)
                 {
-                  // What follows is the rest of the row.
+                  // deal.II stores the values of a row one after the other, the
+                  // diagonal one first. So the address of the diagonal entry is
+                  // that of the row.
                   double *const entries =
                     &system_matrix.diag_element(cell_dofs[i]);
                   unsigned int position = below;
                   for (unsigned int j = l; j < l + dim; ++j)
                     {
+                      // `position` counts the columns of the row below the
+                      // column j, the diagonal one included. If j is above the
+                      // diagonal, that entry in the front makes the count the
+                      // index itself; if it is below, the index is one more.
                       if (i == j)
                         entries[0] += cell_matrix(i, i);
                       else if (is_free[i] && is_free[j])
@@ -304,7 +390,11 @@ namespace Debond
             }
         }
     };
-    // Rows of second nodes of pairs, whose ranks may not have these cells.
+    // The jump couples cells at a first node with the second node, whose rank
+    // may not have these cells. Their matrices are sent to all ranks, each by
+    // the owner of the cell, which then add the rows of the appended nodes. The
+    // rows of the cell's own nodes are added without that, so that nothing is
+    // added twice.
     using Dofs = std::vector<dealii::types::global_dof_index>;
     std::vector<std::pair<Dofs, std::vector<double>>> glued;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -346,6 +436,8 @@ namespace Debond
   DofVector
   ElasticProblem<dim>::diagonal() const
   {
+    // Each degree of freedom belongs to one rank, so that the sum over the
+    // ranks is its entry.
     DofVector result(elastic_unknowns.n_dofs());
     for (const auto i : elastic_unknowns.dof_handler().locally_owned_dofs())
       result(i) = system_matrix.diag_element(i);
@@ -369,6 +461,9 @@ namespace Debond
   const DistributedMatrix &
   ElasticProblem<dim>::distributed_matrix() const
   {
+    // The matrix of Trilinos is a copy of the rows and needs MPI, which a small
+    // problem on one rank does without. Therefore it is made by the first one
+    // who asks.
     if (!distributed)
       distributed = std::make_unique<const DistributedMatrix>(
         MatrixOnRanks(system_matrix,
@@ -383,6 +478,8 @@ namespace Debond
   DofVector
   ElasticProblem<dim>::load(const LoadFactors factors) const
   {
+    // With whole_load = f_0 + f_1 + f_2 this is f_0 + t f_1 + d f_2: the first
+    // line has t in front of all three.
     DofVector load = whole_load;
     load *= factors.loads;
     if (f_0.size() > 0)
@@ -398,6 +495,8 @@ namespace Debond
   double
   ElasticProblem<dim>::lifting_energy(const LoadFactors factors) const
   {
+    // J at w = 0 is that of the lifting, 1/2 <A G, G> - <f, G>, from the
+    // strains of G.
     return elastic_unknowns.has_lifting() ?
              elastic_fields->elastic_functional(
                DofVector(elastic_unknowns.n_dofs()), factors) :
