@@ -19,6 +19,10 @@ namespace Debond
                    const DofVector          &cartesian_displacement,
                    const Action             &action)
     {
+      // The displacement has its lifting already, and no load factor enters:
+      // elastic stresses do not depend on it. A rank visits its own cells, each
+      // of which belongs to one rank, so that sums over ranks count every cell
+      // once.
       const ElasticUnknowns<dim> &unknowns = fields.unknowns();
       CellStresses<dim>           of_cell(fields,
                                 cartesian_displacement,
@@ -57,6 +61,8 @@ namespace Debond
     , temperature_changes(changes)
     , heat_is_dead(heat_is_dead)
   {
+    // What grows with the load factor is what remains of all forces without the
+    // dead ones.
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
   }
@@ -81,6 +87,12 @@ namespace Debond
   ElasticFields<dim>::residual(const DofVector  &u,
                                const LoadFactors factors) const
   {
+    // The residual A u - f is summed up from stresses: the force on node k is
+    // int C eps(u) grad phi_k, by the rule that integrates products of two
+    // strains exactly. The matrix A is not used, so that this also checks it,
+    // and the rounding is that of strains. Forces are Cartesian until the loads
+    // are subtracted; the change of basis then takes them to the unknowns,
+    // where constrained entries keep the reactions.
     DofVector forces(elastic_unknowns.n_dofs());
     for_each_point(*this,
                    elastic_unknowns.cartesian_displacement(u, factors),
@@ -108,6 +120,12 @@ namespace Debond
   ElasticFields<dim>::residual_rounding(const DofVector  &u,
                                         const LoadFactors factors) const
   {
+    // A bound for what the rounding of the entries of u makes of the residual:
+    // products of absolute values in place of the terms of A u, cell by cell.
+    // |eps| is at most the sum of |u_i| |grad phi_i|, the stress at most |C|
+    // |eps| in the norm of tensors, and the force on a node that times |grad
+    // phi_k|. Displacements of glued nodes are sums of unknowns that may be
+    // larger than them, which sizes_of_terms() takes into account.
     const DofVector displacement =
       elastic_unknowns.cartesian_displacement(u, factors);
     DofVector sizes = displacement;
@@ -136,6 +154,7 @@ namespace Debond
                          size_stress * size_of_strain(i / dim);
                    });
     add_over_ranks(rounding, elastic_unknowns.communicator());
+    // Loads have a rounding of their own, relative to themselves.
     const DofVector forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
@@ -153,6 +172,9 @@ namespace Debond
   {
     if (temperature_changes.empty())
       return 0.;
+    // The values at the points of strain_rule() are those of a function on the
+    // cell, one that is constant for degree 1 and linear for degree 2. Cells
+    // are numbered as in temperature_changes().
     const std::vector<double> functions =
       strain_functions<dim>(elastic_unknowns.degree(), unit_point);
     double sum = 0.;
@@ -193,6 +215,8 @@ namespace Debond
   ElasticFields<dim>::load_work(const DofVector  &u,
                                 const LoadFactors factors) const
   {
+    // The work includes that on prescribed displacements and gaps: u is with
+    // its lifting, and the dead loads are not in the live ones.
     return elastic_unknowns.basis().forces_to_unknowns(live_forces) *
            elastic_unknowns.lifted(u, factors);
   }
@@ -205,6 +229,12 @@ namespace Debond
                                  const LoadFactors factors,
                                  const DofVector  &load) const
   {
+    // The energy is a sum of positive terms of each point of each cell, 1/2 eps
+    // : C eps, from which the work of the load is subtracted entry by entry.
+    // Kahan's compensated sum loses no digits to the number of terms. In <A u,
+    // u> rows of A nearly cancel, and the rounding would grow with the
+    // condition of A. Each degree of freedom counts on the rank that owns it,
+    // and only the sums of the ranks are added at last.
     namespace accumulators = boost::accumulators;
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
@@ -233,6 +263,8 @@ namespace Debond
     : fields(fields)
     , cartesian_displacement(cartesian_displacement)
     , heat_factor(fields.heat_factor(factors))
+    // The base element is the scalar one. The unknowns of a cell come node by
+    // node, component d of node k having the number dim k + d.
     , shape(fields.unknowns().dof_handler().get_fe().base_element(0),
             rule,
             fields.unknowns().symmetry())
@@ -259,6 +291,8 @@ namespace Debond
   dealii::Tensor<1, dim>
   CellStresses<dim>::displacement(const unsigned int q) const
   {
+    // Unknown i of the cell belongs to the node i / dim and the component i %
+    // dim.
     dealii::Tensor<1, dim> result;
     for (unsigned int i = 0; i < cell_values.size(); ++i)
       result[i % dim] += cell_values[i] * shape.shape_value(i / dim, q);
@@ -272,8 +306,10 @@ namespace Debond
   CellStresses<dim>::gradient(const unsigned int q) const
   {
     dealii::Tensor<2, dim> result;
-    // The basis sums to one: without vertex 0 there are only differences of
-    // neighbours' displacements, and a translation rounds nothing away.
+    // The basis sums to one, so that its gradients sum to zero: the value at
+    // vertex 0 can be subtracted from all others. What remains are differences
+    // of neighbours' displacements, and a translation of the whole body, which
+    // is often much larger, rounds no digit of the strain away.
     for (unsigned int i = dim; i < cell_values.size(); ++i)
       result[i % dim] +=
         (cell_values[i] - cell_values[i % dim]) * shape.shape_grad(i / dim, q);
@@ -286,6 +322,10 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   CellStresses<dim>::strain(const unsigned int q) const
   {
+    // The strain is that of the solid, a tensor with three rows in 2D as well,
+    // whose shear components are halves of the angles. Across a plane body it
+    // is zero, and what plane stress strains the body there is not needed, as
+    // the tensor C has been condensed. Around an axis it is u_r / r.
     dealii::SymmetricTensor<2, 3> result =
       resized<3>(dealii::symmetrize(gradient(q)));
     for (unsigned int i = 0; i < cell_values.size(); i += dim)
@@ -308,6 +348,8 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   CellStresses<dim>::stress(const unsigned int q) const
   {
+    // The stress is C (eps - theta alpha): thermal strains make no stress by
+    // themselves.
     return elastic_stress(q) -
            temperature_change(q) * fields.thermal_stress(cell);
   }

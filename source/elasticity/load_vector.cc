@@ -21,6 +21,8 @@ namespace Debond
   {
     try
       {
+        // A field with one component is a pressure. It pushes against the
+        // outward normal, and a positive one is a compression.
         return value->n_components == 1 ? -field_value(*value, point) * normal :
                                           field_vector(*value, point);
       }
@@ -67,6 +69,10 @@ namespace Debond
   dealii::Quadrature<dim - 1>
   face_rule(const unsigned int n_parts)
   {
+    // The rule is repeated on equal parts of the face, because expressions of
+    // users have kinks and jumps inside of faces, which no rule of high degree
+    // integrates well. The points of a part are affine images of those of the
+    // reference face, with the weights divided by the number of parts.
     const dealii::QGaussSimplex<dim - 1> rule(dim == 2 ? 4 : 3);
     std::vector<dealii::Point<dim - 1>>  points;
     std::vector<double>                  weights;
@@ -109,6 +115,11 @@ namespace Debond
                   const std::array<dealii::Point<dim>, dim> &corners,
                   const dealii::Quadrature<dim - 1>         &rule)
     {
+      // The reference triangle has the area 1/2, to which the weights sum in
+      // 3D; the factor dim - 1 makes them sum to one, so that the result is a
+      // mean and the caller multiplies it by the measure of the face. Around an
+      // axis the mean has the factor 2 pi r and its measure is the length in
+      // the section.
       dealii::Tensor<1, dim> sum;
       for (unsigned int q = 0; q < rule.size(); ++q)
         {
@@ -130,6 +141,12 @@ namespace Debond
              const Symmetry            symmetry,
              std::vector<std::string> &notes)
     {
+      // The difference between the rule and one of half as many parts is an
+      // indicator that costs little on each face. Only if it is large on some
+      // face is the integral there compared with one of twice as many parts,
+      // which estimates the error that was made. Both are relative to the load
+      // of the entry on all faces: a bad face of a small part of the load is
+      // not worth a note.
       if (worst.difference <= Tolerance::load_integral * worst.size)
         return;
       const auto mean_by = [&](const unsigned int n_parts) {
@@ -146,6 +163,7 @@ namespace Debond
         worst.size;
       if (error <= Tolerance::load_integral)
         return;
+      // The place in the note is the centre of the face.
       dealii::Point<dim> centre;
       for (const dealii::Point<dim> &corner : worst.corners)
         centre += corner / static_cast<double>(dim);
@@ -187,6 +205,8 @@ namespace Debond
              const unsigned int                         i,
              const std::vector<dealii::Tensor<1, dim>> &values)
     {
+      // Each shape function of the element has one component, and the values
+      // contain the weights of the rule.
       const unsigned int d =
         fe_values.get_fe().system_to_component_index(i).first;
       long double sum = 0.;
@@ -206,6 +226,11 @@ namespace Debond
                   DofVector                     &forces,
                   std::vector<std::string>      *notes)
     {
+      // Each rank integrates over the faces of its own cells. The forces are
+      // those of f_2 phi_k at the points of the rule. With them two means are
+      // computed for each entry of the scene, by the rule and by half as many
+      // parts: their difference on the worst face decides on a note. A face is
+      // judged for each entry apart, as tractions on one boundary add up.
       const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
       const auto                  &fe = dof_handler.get_fe();
       std::map<std::string, WorstFace<dim>> worst_faces;
@@ -222,18 +247,22 @@ namespace Debond
 
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       std::vector<dealii::Tensor<1, dim>>          values(rule.size());
+      // A traction that is not finite throws on the rank that has the face.
+      // Nothing within communicates.
       on_all_ranks(dof_handler.get_communicator(), [&]() {
         for (const auto &cell : owned_cells(dof_handler))
           for (const unsigned int f : cell->face_indices())
             {
               if (!cell->at_boundary(f))
                 continue;
+              // Ids of outer faces are known, for the cell is an own one.
               const auto face       = cell->face(f);
               const auto loads_here = loads.tractions.find(face->boundary_id());
               if (loads_here == loads.tractions.end())
                 continue;
               fe_values.reinit(cell, f);
               cell->get_dof_indices(dofs);
+              // Faces are flat: one normal and one measure for all points.
               const dealii::Tensor<1, dim> normal  = fe_values.normal_vector(0);
               const double                 measure = face->measure();
               std::array<dealii::Point<dim>, dim> corners;
@@ -254,6 +283,9 @@ namespace Debond
                       mean_size += values[q].norm();
                     }
                   for (unsigned int i = 0; i < dofs.size(); ++i)
+                    // In deal.II 9.4.1 simplex elements answer yes for all
+                    // nodes of the cell. Shape functions of nodes off the face
+                    // vanish on it, up to rounding, and so do their forces.
                     if (fe.has_support_on_face(i, f))
                       forces(dofs[i]) +=
                         measure * integral(fe_values, i, values);
@@ -267,6 +299,8 @@ namespace Debond
                        traction, symmetry, normal, corners, coarse_rule) -
                      by_rule)
                       .norm();
+                  // `size` continues to sum up over all faces, whichever is the
+                  // worst.
                   if (difference > worst.difference)
                     worst = {&traction,
                              worst.size,
@@ -279,7 +313,10 @@ namespace Debond
       });
       if (notes == nullptr)
         return;
-      // Other ranks may have all faces of a load.
+      // The sum below is collective, so that all ranks need the same entries in
+      // the same order: a rank without a face of a load enters it with zeros. A
+      // map is sorted by name, which is the order on all ranks. Each rank
+      // writes a note on its own worst face, relative to the load of all.
       for (const auto &[unused, tractions] : loads.tractions)
         for (const Traction<dim> &traction : tractions)
           worst_faces[traction.entry];
@@ -301,6 +338,8 @@ namespace Debond
                    const Symmetry                 symmetry,
                    DofVector                     &forces)
     {
+      // The forces are int f_0 phi_k, by a rule that is exact for products with
+      // linear forces. A force that jumps should do so between cells.
       const auto                                  &fe = dof_handler.get_fe();
       SimplexValues<dim>                           values(fe.base_element(0),
                                 dealii::QGaussSimplex<dim>(fe.degree + 1),

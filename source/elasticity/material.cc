@@ -25,6 +25,8 @@ namespace Debond
     dealii::Tensor<2, 3>
     rotation(const double degrees)
     {
+      // The material's axis 3 is the z axis, so that the rotation is about it
+      // in 2D and 3D.
       return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
         dealii::Point<3>(0., 0., 1.), degrees * dealii::numbers::PI / 180.);
     }
@@ -34,6 +36,7 @@ namespace Debond
     Solid<2>
     rotated(const Solid<2> &tensor, const double degrees)
     {
+      // Axes that are not turned keep their numbers exactly.
       return degrees == 0. ?
                tensor :
                dealii::Physics::Transformations::basis_transformation(
@@ -47,6 +50,9 @@ namespace Debond
     dealii::SymmetricTensor<4, dim>
     part_of(const Solid<4> &solid)
     {
+      // In plane strain the plane part of the solid's tensor is that of the
+      // plane problem, as strains across the plane are zero. In plane stress
+      // solid_tensor() has been condensed already.
       dealii::SymmetricTensor<4, dim> result;
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = i; j < dim; ++j)
@@ -62,6 +68,12 @@ namespace Debond
     std::string
     fault(const Orthotropy &material)
     {
+      // Energies are positive if the compliance is positive definite. Its shear
+      // part is diagonal, and the normal part is tested by its principal
+      // minors, in terms of the material constants: positive moduli; nu_ij^2 <
+      // E_i / E_j, that is nu_ij nu_ji < 1, for each pair; and the determinant.
+      // The comparisons are written so that numbers that are not finite fail
+      // them.
       const Orthotropy::Three &E = material.young_moduli;
       const Orthotropy::Three &G = material.shear_moduli;
       for (const Orthotropy::Three &moduli : {E, G})
@@ -84,6 +96,9 @@ namespace Debond
                          j + 1,
                          ") = ",
                          std::sqrt(E[i] / E[j]));
+      // The determinant of the normal part of the compliance times E_1 E_2 E_3.
+      // With nu_ji = nu_ij E_j / E_i it is 1 - nu_12 nu_21 - nu_13 nu_31 -
+      // nu_23 nu_32 - 2 nu_12 nu_23 nu_31.
       const double rest =
         1. - nu[0] * nu[0] * E[1] / E[0] - nu[1] * nu[1] * E[2] / E[0] -
         nu[2] * nu[2] * E[2] / E[1] - 2. * nu[0] * nu[1] * nu[2] * E[2] / E[0];
@@ -125,6 +140,8 @@ namespace Debond
       throw std::invalid_argument(words(
         "Young modulus = ", young_modulus, " must be positive and finite."));
 
+    // In plane stress lambda' = E nu / (1 - nu^2), and lambda' + mu > 0 allows
+    // all nu below 1. Otherwise the bulk modulus is infinite at nu = 1/2.
     const bool is_plane_stress =
       dim == 2 && hypothesis == Hypothesis::plane_stress;
     const double largest = is_plane_stress ? 1. : 0.5;
@@ -148,6 +165,10 @@ namespace Debond
   {
     if (orthotropy)
       {
+        // This serves estimates that know isotropic materials alone: mu is the
+        // least shear modulus, and lambda + 2 mu the largest stiffness along an
+        // axis of the material. The angle is taken away so that it does not
+        // depend on how the axes are turned.
         Material unturned    = *this;
         unturned.axis_angle  = 0.;
         const auto stiffness = unturned.elasticity_tensor<dim>();
@@ -156,6 +177,9 @@ namespace Debond
           largest = std::max(largest, stiffness[d][d][d][d]);
         return largest - 2. * shear_modulus();
       }
+    // In plane stress sigma_zz = 0 is eliminated from the law of the solid:
+    // lambda' = 2 lambda mu / (lambda + 2 mu) = E nu / (1 - nu^2), with the
+    // same mu.
     const double E  = young_modulus;
     const double nu = poisson_ratio;
     return dim == 2 && hypothesis == Hypothesis::plane_stress ?
@@ -180,6 +204,7 @@ namespace Debond
   {
     if (!orthotropy)
       return {{young_modulus, young_modulus}};
+    // Shear moduli count as well, since they can be far below all Young moduli.
     const auto &E = orthotropy->young_moduli;
     const auto &G = orthotropy->shear_moduli;
     return {{std::min(*std::min_element(E.begin(), E.end()),
@@ -194,6 +219,9 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   Material::thermal_stress() const
   {
+    // A body that cannot move has the elastic strain -alpha theta and the
+    // stress -C alpha theta. In plane stress the component across the plane is
+    // zero, as the tensor has been condensed.
     return solid_tensor<dim>() * thermal_strain();
   }
 
@@ -208,9 +236,17 @@ namespace Debond
     Solid<4> result;
     if (orthotropy)
       {
+        // The compliance is known along the material axes. It is turned to the
+        // axes of the body and inverted there; its inverse is the stiffness.
         result =
           dealii::invert(dealii::Physics::Transformations::basis_transformation(
             compliance_along_axes(), rotation(axis_angle)));
+        // In plane stress the strain across the plane is whatever makes
+        // sigma_zz zero. Eliminating it is a rank-one change, C - (C e)(C e)' /
+        // C_zzzz with the strain e = e_z e_z: afterwards the row and the column
+        // of zz are zero, and the strain eps_zz that is given has no effect.
+        // Without shear between plane and z, as the material is turned about z,
+        // nothing else has to be eliminated.
         Solid<2> across;
         across[2][2] = 1.;
         if (is_plane_stress)
@@ -220,6 +256,9 @@ namespace Debond
           }
         return result;
       }
+    // The isotropic law 2 mu eps + lambda tr(eps) I. In plane stress the
+    // component zz is taken out of both parts, and lambda is that of the plane
+    // problem.
     Solid<2> identity = dealii::unit_symmetric_tensor<3>();
     result            = 2. * shear_modulus() * dealii::identity_tensor<3>();
     if (is_plane_stress)
@@ -243,8 +282,15 @@ namespace Debond
   double
   Material::least_stiffness() const
   {
+    // The isotropic tensor has the eigenvalues 2 mu and, in the direction of
+    // the identity, 2 mu + dim lambda. Which of them is less depends on the
+    // sign of lambda.
     if (!orthotropy)
       return 2. * shear_modulus() + dim * std::min(0., lame_lambda<dim>());
+    // In Kelvin's notation shear strains have the factor sqrt(2), so that the
+    // norm of the vector is that of the tensor and the eigenvalues of the
+    // matrix are those of the tensor. In Voigt's notation, with the factor 2,
+    // they would not be.
     const dealii::FullMatrix<double> kelvin =
       dealii::Physics::Notation::Kelvin::to_matrix(elasticity_tensor<dim>());
     Eigen::MatrixXd matrix(kelvin.m(), kelvin.n());
@@ -263,9 +309,12 @@ namespace Debond
   {
     if (orthotropy)
       {
+        // The energy 1/2 sigma : S sigma from the compliance S, for the stress
+        // of the solid: with it plane stress and plane strain are one formula.
         const Solid<2> along = along_axes(stress);
         return 0.5 * (along * (compliance_along_axes() * along));
       }
+    // The same with S sigma = ((1 + nu) sigma - nu tr(sigma) I) / E.
     const double trace = dealii::trace(stress);
     return ((1. + poisson_ratio) * (stress * stress) -
             poisson_ratio * trace * trace) /
@@ -285,6 +334,11 @@ namespace Debond
   dealii::SymmetricTensor<4, 3>
   Material::compliance_along_axes() const
   {
+    // S_iiii = 1 / E_i, S_iijj = -nu_ij / E_i for i < j, which is symmetric by
+    // definition, and 1 / (4 G_ij) for shear: the strain eps_ij is half of the
+    // angle sigma_ij / G_ij, and as a tensor both sigma_ij and sigma_ji take
+    // part in it with half of that each. The pairs are in the order 12, 13, 23
+    // of the constants.
     Solid<4> result;
     for (unsigned int i = 0, pair = 0; i < 3; ++i)
       {
@@ -304,6 +358,8 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   Material::thermal_strain() const
   {
+    // The expansions are along the axes of the material and have no shear
+    // there; turned axes give the strain a shear component.
     Solid<2> along_axes;
     for (unsigned int d = 0; d < 3; ++d)
       along_axes[d][d] = thermal_expansions[d];
@@ -315,6 +371,8 @@ namespace Debond
   double
   von_mises(const dealii::SymmetricTensor<2, 3> &stress)
   {
+    // sqrt(3/2 s : s) with the deviator s, which is |sigma| under uniaxial
+    // stress.
     return std::sqrt(1.5) * dealii::deviator(stress).norm();
   }
 

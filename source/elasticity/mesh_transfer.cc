@@ -15,6 +15,9 @@ namespace Debond
     DofVector
     admissible(const ElasticUnknowns<dim> &unknowns, DofVector cartesian)
     {
+      // Each rank has filled in its own unknowns, so that the sum over ranks is
+      // the whole vector. from_cartesian() takes it to the frames of the target
+      // and subtracts the target's lifting.
       add_over_ranks(cartesian, unknowns.communicator());
       DofVector result = unknowns.from_cartesian(cartesian);
       if (unknowns.has_gap())
@@ -32,8 +35,13 @@ namespace Debond
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target)
   {
-    // Of all cells of the source vertices and values, which other ranks may
-    // have: vertices first.
+    // An ancestor may be on another rank than its descendants, as each mesh is
+    // partitioned by itself. Therefore the corners and nodal values of all
+    // cells of the source are put into one array by the number of the cell in
+    // the whole mesh, first the dim + 1 vertices and then the values, and
+    // summed up over ranks: each cell is one of one rank. This takes dim (dim +
+    // 1) and as many numbers as a cell has unknowns for each cell, on each
+    // rank, for the time of the transfer.
     const auto        &source_dofs = source.unknowns().dof_handler();
     const auto        &fe          = source_dofs.get_fe();
     const unsigned int n           = fe.dofs_per_cell;
@@ -61,7 +69,10 @@ namespace Debond
     const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
     const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
     DofVector               result(unknowns.n_dofs());
-    std::vector<bool>       is_done(result.size(), false);
+    // A node has several cells, in each of which it has the same value, as the
+    // displacement is continuous. Its value is taken from the first one, so
+    // that it is no sum.
+    std::vector<bool> is_done(result.size(), false);
     for (const auto &cell : owned_cells(unknowns.dof_handler()))
       {
         const double *values =
@@ -77,6 +88,10 @@ namespace Debond
             if (is_done[cell_dofs[i]] || !own.is_element(cell_dofs[i]))
               continue;
             is_done[cell_dofs[i]] = true;
+            // The polynomial of the ancestor is evaluated at the node: the
+            // coordinates but the first one are those of the reference cell.
+            // The basis functions of component i % dim are each dim-th one. The
+            // result is exact, as a part of a cell has the same polynomial.
             const auto coordinates =
               barycentric_coordinates<dim>(vertices,
                                            positions[cell_dofs[i] / dim]);
@@ -101,6 +116,10 @@ namespace Debond
   {
     const dealii::DoFHandler<dim> &dofs = source.unknowns().dof_handler();
     const DofVector displacement = source.unknowns().cartesian_displacement(u);
+    // The source is whole on each rank, so that every rank finds the cells of
+    // its own nodes without asking others. With the barycentric coordinates as
+    // weights the P1 field is evaluated, and beside the mesh extrapolated from
+    // the nearest cell.
     const CellSearch<dim>                 search(dofs.get_triangulation());
     const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
     const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();

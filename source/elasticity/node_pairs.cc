@@ -10,6 +10,11 @@ namespace Debond
   NodePairs<dim>::NodePairs(const std::vector<BoundaryFace<dim>> &high,
                             const std::vector<BoundaryFace<dim>> &low)
   {
+    // Nodes of both sides are paired by their places. Those of the low side are
+    // sorted by one number, their place along a line, and each node of the high
+    // side looks among those in a narrow interval of that number: n log n
+    // operations in place of n^2. The line has no special direction, so that
+    // few nodes have the same number.
     using Node = std::pair<unsigned int, dealii::Point<dim>>;
     std::multimap<double, Node> by_place;
     std::set<unsigned int>      of_low, of_high;
@@ -22,10 +27,16 @@ namespace Debond
       for (unsigned int n = 0; n < face.n_nodes; ++n)
         {
           const unsigned int node = face.indices[n];
+          // A node that both sides have in common is an end of the interface,
+          // and has no jump.
           if (of_low.count(node) > 0)
             shared.insert(node);
           else if (of_high.insert(node).second)
             {
+              // Places count as the same relative to the length of an edge of
+              // the face: mesh files have rounded coordinates. Numbers on the
+              // line differ by less than twice the distance of the points, so
+              // that the interval of 2 near on both sides misses none.
               const dealii::Point<dim> &point = face.positions[n];
               const double              near  = Tolerance::same_place *
                                   face.positions[0].distance(face.positions[1]);
@@ -43,6 +54,8 @@ namespace Debond
                   "the meshes on the two sides of an interface do not match "
                   "at " +
                   point_text(point));
+              // The first node is the one on the high side at first, with the
+              // sign 1; glue() may exchange them.
               pairs.push_back({node, other->second.first, 1.});
             }
         }
