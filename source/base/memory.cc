@@ -19,7 +19,7 @@ namespace Debond
     memory_of_process()
     {
       // deal.II reads /proc/self/status, whose numbers are in units of 1024
-      // bytes. Where there is no such file they are zero.
+      // bytes. Without such a file they are zero.
       dealii::Utilities::System::MemoryStats memory; // in kB
       dealii::Utilities::System::get_memory_stats(memory);
       return memory;

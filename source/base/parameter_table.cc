@@ -233,7 +233,7 @@ namespace Debond
     const std::function<std::string(const std::string &)> &evaluate)
   {
     // An entry that has been set several times is taken once, with its last
-    // value. Where the pattern asks for more than any text, the evaluated
+    // value. If the pattern asks for more than any text, the evaluated
     // expression is tried first; a free text, such as a function of x, stays as
     // it was written. If that is not allowed the other form is tried, so that
     // an entry for numbers or words accepts both. Errors are of what was

@@ -67,6 +67,9 @@ namespace Debond
            const BoundaryFace<dim> &face,
            const unsigned int       node)
     {
+      // On a quadratic edge the unknown is a Bernstein coefficient of u_nu, and
+      // so has the gap to be: u_nu <= g for all coefficients then gives it for
+      // the interpolated gap at each point.
       const auto at = [&](const unsigned int k) {
         return gap_value(supports, face.id, face.positions[k]);
       };
@@ -79,6 +82,10 @@ namespace Debond
     std::vector<unsigned int>
     ranks(const std::vector<double> &values, const double tolerance)
     {
+      // Sorted values that differ from the one before by more than the
+      // tolerance begin a new rank. Comparing with a tolerance directly would
+      // be no order, as a chain of close values has ends that are not close. In
+      // a chain all values share one rank here.
       std::vector<unsigned int> order(values.size());
       std::iota(order.begin(), order.end(), 0u);
       std::sort(order.begin(),
@@ -105,6 +112,11 @@ namespace Debond
     std::vector<unsigned int>
     contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes)
     {
+      // The coordinates of the nodes are replaced by their ranks, one axis
+      // after the other, and these are compared lexicographically. Nodes at one
+      // place, where sides of different normals meet, are equal and keep their
+      // order by the stable sort, so that the order of s is the same on all
+      // machines and in turned bodies.
       double size = 0.;
       for (const auto &node : nodes)
         size = std::max(size, node.position.distance(nodes[0].position));
@@ -160,6 +172,10 @@ namespace Debond
         , constrained(constrained)
         , places(faces.size())
       {
+        // The vertices come from a map by the number of the node, so that
+        // nodes, frames and constraints are made in that order on all ranks.
+        // Slip is checked last, because it needs the groups of normals that
+        // make_nodes() finds.
         boundary.degree   = degree;
         boundary.symmetry = conditions.symmetry;
         find_vertices(conditions);
@@ -171,6 +187,10 @@ namespace Debond
       ContactSpace<dim>
       space()
       {
+        // Nodes are put in the order of their places here, and faces get the
+        // numbers that the nodes have then. The vector of unknowns is s of all
+        // nodes first, which have the bound 0, and then the tangential
+        // displacements, which have none.
         std::vector<dealii::types::global_dof_index> dofs;
         std::vector<unsigned int>                    place(nodes.size());
         for (const unsigned int node : contact_order<dim>(nodes))
@@ -193,6 +213,10 @@ namespace Debond
         };
         number(boundary.nodes);
         number(boundary.held_vertices);
+        // Vertices that are held at the foundation, without a gap and without
+        // tangents, have an opening that is always zero, and their bonds have
+        // no energy and no force. If all held vertices are such, nobody who
+        // sums over them need see them.
         if (std::all_of(boundary.held_vertices.begin(),
                         boundary.held_vertices.end(),
                         [](const auto &vertex) {
@@ -216,6 +240,10 @@ namespace Debond
         for (unsigned int f = 0; f < faces.size(); ++f)
           for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
             {
+              // Each face appends its normal, measure and gap to its vertices;
+              // its place among them is kept, to find the group that it belongs
+              // to afterwards. One fixed face is enough to fix the tangential
+              // displacement of a vertex, as u is continuous.
               ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
               vertex.position            = faces[f].positions[v];
               places[f][v] = static_cast<unsigned int>(vertex.normals.size());
@@ -234,6 +262,8 @@ namespace Debond
       bool
       is_on_axis(const BoundaryFace<dim> &face) const
       {
+        // In the section of a body of revolution a face is a line with two
+        // vertices.
         return node_supports.on_axis().count(face.indices[0]) > 0 &&
                node_supports.on_axis().count(face.indices[1]) > 0;
       }
@@ -262,6 +292,10 @@ namespace Debond
       void
       check_slip(const BoundaryConditions &conditions) const
       {
+        // The check needs the normals of faces, not those of nodes: the
+        // displacement that both conditions allow at a vertex has to be a
+        // multiple of the normal of the flat side, for u_tau = 0 holds on all
+        // of that.
         const auto is_moved = [this](const dealii::types::boundary_id id) {
           return std::any_of(supports.displacements.begin(),
                              supports.displacements.end(),
@@ -284,6 +318,11 @@ namespace Debond
       check_prescribed(const PrescribedNode<dim>    &prescribed,
                        const dealii::Tensor<1, dim> &normal) const
       {
+        // The supports prescribe r_k . u = v_k along orthonormal directions
+        // r_k, and u is to be c n. With p_k = r_k . n this needs v_k = c p_k
+        // for all k, so that c = sum p_k v_k / sum p_k^2. If sum p_k^2 is
+        // neither 0 nor 1 the normal is neither prescribed nor free, which is
+        // allowed only if the prescribed values are zero.
         double product = 0., square = 0., largest = 0.;
         for (const auto &row : prescribed.rows)
           {
@@ -320,6 +359,9 @@ namespace Debond
               const ContactVertex<dim> &vertex,
               const std::size_t         n_groups) const
       {
+        // A vertex has one gap for each of its normals. Where boundaries with
+        // different gaps meet, the least one holds: the vertex must not enter
+        // either of the foundations.
         std::vector<double> gaps(n_groups,
                                  std::numeric_limits<double>::infinity());
         for (unsigned int k = 0; k < vertex.gaps.size(); ++k)
@@ -344,12 +386,19 @@ namespace Debond
           return unknown;
         for (unsigned int k = 0; k < normals.size(); ++k)
           {
+            // What remains of a normal without its projection on the prescribed
+            // directions. The normal displacement is unknown if anything
+            // remains of it that is more than rounding of mean normals.
             dealii::Tensor<1, dim> rest = normals[k];
             for (const auto &row : prescribed.rows)
               rest -= (normals[k] * row.direction) * row.direction;
             if (rest.norm() > Tolerance::free_normal)
               unknown.push_back(k);
           }
+        // The square of the cosine between the normal and the space of the
+        // prescribed directions. With u_tau = 0 only the multiples of the
+        // normal remain, and a support that is inclined to it leaves none of
+        // these if it prescribes zero.
         double along_normal = 0.;
         for (const auto &row : prescribed.rows)
           along_normal += std::pow(row.direction * normals[0], 2);
@@ -386,6 +435,12 @@ namespace Debond
       void
       make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
       {
+        // The faces around the vertex are grouped by their normals. For each
+        // group the normal displacement is either unknown, which makes a
+        // contact node with its gap, or known, which makes a held vertex whose
+        // opening enters J as a constant. The frame of the vertex has the
+        // normals of its nodes as its first rows, so that u_nu of the k-th node
+        // is the k-th unknown.
         const VertexNormals<dim> groups(vertex.normals, vertex.measures);
         std::vector<dealii::Tensor<1, dim>> normals = groups.normals;
         // Across the axis is the same face once more.
@@ -418,6 +473,8 @@ namespace Debond
         for (const unsigned int k : unknown)
           {
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
+            // The frame lists the free normals in this order, so that the
+            // number of the unknown is that of the directions before it.
             normal_dofs.push_back(dim * index +
                                   static_cast<unsigned int>(directions.size()));
             constrained.set_gap(normal_dofs.back(), gaps[k]);
@@ -425,6 +482,8 @@ namespace Debond
             nodes.push_back({vertex.position, normals[k], 0., gaps[k]});
           }
 
+        // Reactions at a held vertex count for its support. At an interface
+        // there are two, one for each body.
         std::array<unsigned int, 2> supports{
           {prescribed.rows.empty() ? no_node : prescribed.rows[0].support,
            no_node}};
@@ -447,6 +506,7 @@ namespace Debond
           constrained.add_frame(prescribed,
                                 directions,
                                 vertex.is_tangential_fixed);
+        // The tangents come after the frame, in whose rows they are.
         if (shears)
           for (unsigned int k = 0; k < normals.size(); ++k)
             add_tangents(prescribed,
@@ -468,6 +528,8 @@ namespace Debond
                    const bool                         is_normal_known,
                    const unsigned int                 number)
       {
+        // The list is asked for anew at each use: the vector of held vertices
+        // grows below, which moves its elements.
         const auto tangents = [&]() -> auto &
         {
           return is_normal_known ? boundary.held_vertices[number].tangents :
@@ -476,6 +538,9 @@ namespace Debond
         using Held          = typename ContactBoundary<dim>::HeldVertex;
         const auto n        = static_cast<unsigned int>(prescribed.rows.size());
         const auto add_held = [&](const dealii::Tensor<1, dim> &way) {
+          // The part of a prescribed displacement along the boundary stretches
+          // the bonds that shear. It becomes a held vertex of its own, with the
+          // direction as its normal and the length as its displacement.
           const dealii::Tensor<1, dim> along = way - (way * normal) * normal;
           const double                 size  = along.norm();
           if (size <= Tolerance::free_normal * way.norm())
@@ -514,6 +579,9 @@ namespace Debond
         if (is_normal_known)
           constrained.add_frame(prescribed, {}, false);
         const auto &frame = constrained.frames().back().to_unknowns;
+        // The remaining rows of the frame are orthonormal and span the free
+        // directions along the boundary. Their displacements become unknowns of
+        // s.
         for (unsigned int d = n + (is_normal_known ? 0 : 1); d < dim; ++d)
           tangents().push_back({frame[d], false, dim * prescribed.node + d});
       }
@@ -524,12 +592,19 @@ namespace Debond
       {
         for (unsigned int f = 0; f < faces.size(); ++f)
           {
+            // Each face refers to nodes by their numbers in the order of s, or
+            // to held vertices. For each coefficient of the face the integral
+            // of its basis function is added to the measure of its node: the
+            // weights of the quadrature at the nodes, int phi_i over Gamma_C,
+            // each with the normal of its group alone.
             typename ContactBoundary<dim>::Face face;
             std::copy_n(faces[f].positions.begin(), dim, face.vertices.begin());
             dealii::Point<dim> middle;
             for (const dealii::Point<dim> &corner : face.vertices)
               middle += corner / static_cast<double>(dim);
             face.normal = faces[f].normal;
+            // 2 pi r is linear along the face, so that the measure of the cone
+            // is the length times 2 pi r in the middle.
             face.measure =
               faces[f].measure * circumference(boundary.symmetry, middle);
             face.id   = faces[f].id;

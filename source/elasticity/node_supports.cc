@@ -16,6 +16,9 @@ namespace Debond
     clamp_name(const BoundaryConditions        &conditions,
                const dealii::types::boundary_id id)
     {
+      // A clamp may consist of several pieces with names, and reactions are
+      // reported by name. The widest name whose ids are all clamped says most;
+      // a name that is clamped in part would count forces of a free piece.
       std::string name = boundary_name(conditions.names, id);
       std::size_t size = 0;
       for (const auto &[piece, ids] : conditions.names)
@@ -56,13 +59,18 @@ namespace Debond
           const BoundaryFace<dim>           &face,
           const dealii::Tensor<1, dim>      &normal)
     {
+      // A roller has one normal, that of its first face, which is prescribed at
+      // all its nodes. On a curved side the nodes would move along a direction
+      // that is not theirs.
       if (condition.is_roller &&
           (face.normal - normal).norm() > Tolerance::same_normal)
         fail(condition,
              "a roller is flat, but the normals of " + condition.name +
                " differ: prescribe components by Displacement " +
                condition.name);
-      // What of the normal is not prescribed.
+      // On the contact boundary the normal displacement must not be prescribed
+      // wholly. It is prescribed wholly if all components that the normal has
+      // are. A roller prescribes it always.
       double free_part = 0.;
       for (unsigned int d = 0; d < dim; ++d)
         if (!condition.is_roller && !condition.components[d])
@@ -89,6 +97,9 @@ namespace Debond
     {
       if (condition.values == nullptr)
         return 0.;
+      // The values at the nodes of the face are interpolated. If the unknown in
+      // the middle of an edge is a coefficient, it follows from the middle and
+      // the two ends.
       const auto value = [&](const unsigned int n) {
         return field_value(*condition.values, face.positions[n], d);
       };
@@ -110,6 +121,8 @@ namespace Debond
   dealii::Tensor<1, dim>
   PrescribedNode<dim>::displacement() const
   {
+    // The rows are orthonormal, so that the sum of value times direction
+    // satisfies them all and is the shortest vector that does.
     dealii::Tensor<1, dim> displacement;
     for (const Row &row : rows)
       displacement += row.value * row.direction;
@@ -122,6 +135,11 @@ namespace Debond
   bool
   PrescribedNode<dim>::add(Row row)
   {
+    // One step of the Gram-Schmidt process, on the direction and with it on the
+    // value: what the other rows prescribe already is subtracted from both. If
+    // no direction remains the row is dependent on the others, and consistent
+    // with them if no value remains, to the largest value of all. Otherwise the
+    // rest is normalised, which divides the value as well.
     double size = std::abs(row.value);
     for (const Row &other : rows)
       {
@@ -147,6 +165,9 @@ namespace Debond
   {
     while (rows.size() < dim)
       {
+        // Of the axes the one of which the most is outside of the rows gives
+        // the next direction. The rows stay orthonormal, and no almost
+        // dependent axis loses digits.
         dealii::Tensor<1, dim> best;
         for (unsigned int d = 0; d < dim; ++d)
           {
@@ -168,6 +189,9 @@ namespace Debond
   NodeSupports<dim>::clamp(const std::vector<BoundaryFace<dim>> &faces,
                            const BoundaryConditions             &conditions)
   {
+    // Clamps come before other supports: the directions of a clamped node are
+    // the axes, and what is prescribed later has to be zero there. A node on
+    // several clamped sides is held by the first one.
     std::map<std::string, unsigned int> numbers;
     for (const BoundaryFace<dim> &face : faces)
       {
@@ -201,6 +225,10 @@ namespace Debond
     const auto support = static_cast<unsigned int>(support_names.size());
     support_names.push_back(condition.name);
 
+    // Faces share nodes, and a field is evaluated once at each of them. The
+    // rows of a condition are added one by one to those of other supports at
+    // the node, so that supports along different directions complement each
+    // other.
     std::set<unsigned int> done;
     for (const BoundaryFace<dim> &face : faces)
       {
@@ -213,7 +241,8 @@ namespace Debond
             std::vector<Row> rows;
             if (condition.is_roller)
               {
-                // Sides along the axes have exact normals.
+                // Normals of sides along the axes are cleared of rounding, so
+                // that their nodes need no frame.
                 dealii::Tensor<1, dim> normal = faces[0].normal;
                 for (unsigned int d = 0; d < dim; ++d)
                   if (std::abs(normal[d]) < Tolerance::zero_in_normal)
@@ -254,6 +283,9 @@ namespace Debond
   NodeSupports<dim>::hold_axis(const std::vector<dealii::Point<dim>> &positions,
                                const double                           diameter)
   {
+    // On the axis u_r = 0, as the strain u_r / r would be infinite otherwise.
+    // No support bears this, for the forces around the axis balance each other.
+    // Coordinates of mesh files are rounded, hence the tolerance.
     const double on_it = Tolerance::same_place * diameter;
     for (unsigned int index = 0; index < positions.size(); ++index)
       {
@@ -294,6 +326,11 @@ namespace Debond
         return rest.norm() <= Tolerance::same_normal;
       });
     };
+    // The unknowns of a first node are the jump, those of a second one its
+    // displacement. A displacement that is prescribed at the first node is one
+    // of the jump only if the second node is held in the same directions, since
+    // the jump is a difference. Therefore the second node has to be the one
+    // that is held wherever the other one is.
     ends_of_interfaces = pairs.ends();
     for (unsigned int k = 0; k < pairs.all().size(); ++k)
       {
@@ -316,8 +353,12 @@ namespace Debond
         std::vector<Row>          &rows   = first->second.rows;
         auto                      &both   = glued[pair.first];
         both = {{rows[0].support, second.rows[0].support}};
+        // The first node is on the low side after an exchange; the list has the
+        // support of the high side first.
         if (pair.sign < 0.)
           std::swap(both[0], both[1]);
+        // From u_first = sign [u] + u_second, the prescribed jump along the row
+        // is sign (value - direction . u_second).
         for (Row &row : rows)
           row.value =
             pair.sign * (row.value - row.direction * second.displacement());

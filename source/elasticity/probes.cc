@@ -22,6 +22,11 @@ namespace Debond
     Weights
     weights_at(const ElasticUnknowns<dim> &unknowns, const Probe<dim> &probe)
     {
+      // A rank finds the point in its own cells only. At a face between ranks
+      // several may find it, each with a depth; the reductions choose the
+      // largest depth and, among equal ones, the first rank. All ranks then
+      // know whether the point is in the body, and throw together or go into
+      // the broadcast together.
       const auto &dof_handler = unknowns.dof_handler();
       const auto &fe          = dof_handler.get_fe();
       const auto  found =
@@ -41,6 +46,8 @@ namespace Debond
         {
           std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
           found.cell_of(dof_handler)->get_dof_indices(dofs);
+          // Shape functions of all components of a node are the same, so that
+          // the first one stands for them.
           for (unsigned int i = 0; i < dofs.size(); i += dim)
             weights[dofs[i]] += fe.shape_value(i, found.unit_point());
         }
@@ -57,6 +64,8 @@ namespace Debond
     {
       if (number_of_ranks(ranks) == 1)
         return own;
+      // The ranks are added up in their order on each rank, so that all have
+      // the same sums.
       Weights result;
       for (const Weights &of_rank :
            dealii::Utilities::MPI::all_gather(ranks, own))
@@ -76,6 +85,9 @@ namespace Debond
                   const IsWanted                                     &is_wanted,
                   Weights                                            &weights)
     {
+      // The weight of a node is int phi_k over the piece, around an axis with
+      // the factor 2 pi r. Divided by their sum the weights make a mean over
+      // the piece.
       constexpr unsigned int dim = Values::dimension;
       for (unsigned int i = 0; i < dofs.size(); i += dim)
         if (is_wanted(i))
@@ -95,6 +107,8 @@ namespace Debond
               const std::string          &piece,
               const Symmetry              symmetry)
     {
+      // The rule is exact for the products of a shape function of degree 2 with
+      // constants, and for linear ones with the radius.
       const auto &fe    = unknowns.dof_handler().get_fe();
       const auto  flags = dealii::update_values | dealii::update_JxW_values |
                          dealii::update_quadrature_points;
@@ -155,6 +169,8 @@ namespace Debond
   {
     for (const Probe<dim> &probe : probes)
       {
+        // Weights depend on the mesh alone, so that they are found once and
+        // serve all states of a load path.
         const auto over = [&](const Symmetry symmetry) {
           return integrals(unknowns, pieces, probe.piece, symmetry);
         };
@@ -167,6 +183,7 @@ namespace Debond
             }))
           weights = over(Symmetry::none);
         Sum sum = {probe.name, probe.kind == Probe<dim>::Kind::force, {}};
+        // A force is a sum over nodes without weights, unlike a mean.
         for (const auto &[dof, weight] : weights)
           sum.weights.emplace_back(dof, sum.of_forces ? 1. : weight);
         sums.push_back(sum);
@@ -187,12 +204,17 @@ namespace Debond
     if (std::any_of(sums.begin(), sums.end(), [](const Sum &sum) {
           return sum.of_forces;
         }))
+      // The residual A u - f at a node is what supports and foundation exert on
+      // it, since the internal forces balance all forces there. It takes a loop
+      // over all cells, which is left out if no probe asks for forces.
       forces = problem.unknowns().cartesian_forces(
         problem.fields().residual(u, factors));
 
     ProbeValues<dim> result;
     for (const Sum &sum : sums)
       {
+        // The sum of the weights is the measure of the piece, and 1 for a
+        // point.
         double total = sum.of_forces ? 1. : 0.;
         if (!sum.of_forces)
           for (const auto &[unused, weight] : sum.weights)

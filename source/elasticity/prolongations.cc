@@ -32,6 +32,10 @@ namespace Debond
     NodeFrames<dim>
     node_frames(const ElasticUnknowns<dim> &unknowns)
     {
+      // Nodes whose unknowns are Cartesian and free are not listed, which are
+      // nearly all. A constrained unknown has a zero row on the way from
+      // displacements to unknowns and a zero column on the way back, so that
+      // corrections leave it as it is.
       NodeFrames<dim> frames;
       for (const auto &row : unknowns.basis().rows(BasisStep::frames))
         frames[row.node] = {row.to_unknowns, row.to_nodal};
@@ -57,7 +61,11 @@ namespace Debond
                   const unsigned int     first_point,
                   const MPI_Comm         ranks)
     {
-      // For each coarse node the weight and the finer one.
+      // Each coarse node chooses the finer one, among those with a frame, whose
+      // value depends on it most; equal weights are decided by the lower
+      // number, so that the choice does not depend on the order in which ranks
+      // offer theirs. If no finer node with a frame has a weight of at least
+      // one half, the coarse node is Cartesian and free.
       using Choice = std::pair<float, unsigned int>;
       std::map<unsigned int, Choice> chosen;
       const auto offer = [&chosen](const unsigned int coarse,
@@ -97,6 +105,10 @@ namespace Debond
                      const NodeFrames<dim> &fine,
                      const NodeFrames<dim> &coarse)
     {
+      // A value at a fine node is u_i = sum_j w_ij u_j in Cartesian components.
+      // In unknowns each block is x_i = to_unknowns_i (w_ij to_cartesian_j
+      // x_j). The blocks are in single precision, as the cycle that uses them
+      // is.
       const auto frame_of = [](const NodeFrames<dim> &frames,
                                const unsigned int     node) {
         const auto frame = frames.find(node);
@@ -119,6 +131,8 @@ namespace Debond
                 map = to->to_unknowns;
               if (from != nullptr)
                 map = map * from->to_cartesian;
+              // Both nodes have no free unknown in common; the block would only
+              // cost memory.
               if (map.norm() == 0.)
                 continue;
               result.columns.push_back(j);
@@ -149,6 +163,11 @@ namespace Debond
     Shares
     share_out(const unsigned int n, Interpolation &rows, const MPI_Comm ranks)
     {
+      // A coarse node goes to the rank of a finer node that depends on it most,
+      // the first one of several ranks. So most of a rank's interpolation is
+      // between its own nodes, and few values are exchanged. The maximum and
+      // the minimum over ranks are the only communication, with one number for
+      // each coarse node.
       const unsigned int n_ranks = number_of_ranks(ranks);
       const unsigned int rank    = rank_of_this(ranks);
       std::vector<float> here(n, 0.f), anywhere(n);
@@ -163,6 +182,8 @@ namespace Debond
       Shares result;
       result.places.resize(n);
       std::iota(result.places.begin(), result.places.end(), 0U);
+      // The numbers of the nodes follow the ranks, and on each rank the order
+      // of the level, so that each rank has one range of numbers.
       std::stable_sort(result.places.begin(),
                        result.places.end(),
                        [&owners](const unsigned int a, const unsigned int b) {
@@ -220,6 +241,10 @@ namespace Debond
     finer.begin = own.n_elements() == 0 ? 0 : own.nth_index_in_set(0) / dim;
     finer.end   = finer.begin + own.n_elements() / dim;
 
+    // The first interpolation is to the own nodes of each rank. The levels
+    // themselves are computed on all ranks from the description of the body, so
+    // that no mesh is communicated; of the rows between them each rank keeps
+    // its own.
     const std::vector<dealii::Point<dim>> nodes = unknowns.node_positions();
     const std::vector<dealii::Point<dim>> points(nodes.begin() + finer.begin,
                                                  nodes.begin() + finer.end);
@@ -232,6 +257,9 @@ namespace Debond
         // Of the first one there are only own rows.
         Interpolation rows =
           result.empty() ? level.to_finer : own_rows(level.to_finer, finer);
+        // The order of the two calls matters: share_out() renumbers the columns
+        // of `rows`, and the frames of the coarse nodes are found by their new
+        // numbers. `fine` and `finer` then describe the level that was coarse.
         Shares coarser =
           share_out(static_cast<unsigned int>(level.vertices.size()),
                     rows,

@@ -14,6 +14,8 @@ namespace Debond
   dealii::Tensor<1, dim>
   RigidMotion<dim>::operator()(const dealii::Point<dim> &point) const
   {
+    // u(x) = t + omega x (x - c), linear in the rotation: displacements are
+    // small.
     const dealii::Tensor<1, dim> x = point - centre;
     if constexpr (dim == 2)
       return translation + rotation[0] * dealii::Tensor<1, dim>({-x[1], x[0]});
@@ -42,6 +44,9 @@ namespace Debond
       RigidMotion<dim>
       sum(const Eigen::VectorXd &parts) const
       {
+        // A rotation with the parameter 1 moves a point at the distance
+        // `length` by 1. With it translations and rotations are comparable
+        // numbers.
         RigidMotion<dim> motion;
         motion.centre = centre;
         for (unsigned int d = 0; d < dim; ++d)
@@ -55,6 +60,9 @@ namespace Debond
       Eigen::VectorXd
       resisted(const Support<dim> &support, const unsigned int n) const
       {
+        // The displacement along the support's direction at its position under
+        // each unit motion of its body. A support of a jump holds one body
+        // relative to another, whose motions have the opposite sign.
         Eigen::VectorXd row   = Eigen::VectorXd::Zero(n);
         const auto      first = n_of_body<dim> * support.body;
         for (unsigned int k = 0; k < n_of_body<dim>; ++k)
@@ -93,12 +101,20 @@ namespace Debond
                      const double                     diameter,
                      const std::vector<std::string>  &bodies)
   {
+    // A motion is free if no support resists it: the null space of the matrix R
+    // with a row for each support. It is found from the eigenvectors of R'R,
+    // which has 3 or 6 rows for each body however many supports there are. An
+    // eigenvalue is the sum of the squared displacements that a unit motion
+    // makes at the supports, so that it is compared with their number.
     const unsigned int n =
       n_of_body<dim> * static_cast<unsigned int>(bodies.size());
     dealii::Tensor<1, dim> centre;
     for (const Support<dim> &support : supports)
       centre += support.position / double(supports.size());
-    // A side can be much smaller than the body that it holds.
+    // A side can be much smaller than the body that it holds. Its levers are
+    // measured by its own size, so that a rotation that it resists does not
+    // look free. Supports at one point have no levers, and the size of the body
+    // is taken.
     double spread = 0.;
     for (const Support<dim> &support : supports)
       spread = std::max(spread, (support.position - centre).norm());
@@ -114,6 +130,9 @@ namespace Debond
         const Eigen::VectorXd row = motions.resisted(support, n);
         gram += row * row.transpose();
       }
+    // The section of a body of revolution moves as a rigid body along its axis
+    // only, which is y, the number 1. All other motions are resisted as by more
+    // than all supports.
     if (symmetry == Symmetry::axis)
       for (unsigned int k = 0; k < n; ++k)
         if (k % n_of_body<dim> != 1)
@@ -130,6 +149,9 @@ namespace Debond
       if (eigen.eigenvalues()[k] <= threshold)
         {
           last = eigen.eigenvectors().col(k);
+          // The null space has no preferred basis, but its projector has a
+          // diagonal that does not depend on it: the entry k is 1 if the unit
+          // motion k is free by itself.
           diagonal += last.cwiseAbs2();
           result.motions.emplace_back();
           for (unsigned int first = 0; first < n; first += n_of_body<dim>)
@@ -142,6 +164,8 @@ namespace Debond
       {
         if (diagonal[k] > 1. - Tolerance::pure_motion)
           result.names.push_back(name_of<dim>(k, bodies));
+        // If no unit motion is free by itself, the message names the ones of
+        // which a free motion is composed with more than a tenth.
         if (std::abs(last[k]) > 0.1)
           components.push_back(name_of<dim>(k, bodies));
       }

@@ -40,6 +40,12 @@ namespace Debond
     if (!loads.temperature_change)
       return changes;
 
+    // Strains of degree 1 are constant in a cell, so that only the mean change
+    // of temperature does work on them; it is taken by a rule of degree 2.
+    // Strains of degree 2 are linear and see the change at the points where the
+    // energy is integrated. All active cells are visited, ghosts included,
+    // since the list is by active_cell_index(). The function is evaluated
+    // without the factor 2 pi r, as the change is a field and no load.
     SimplexValues<dim>         values(dealii::FE_SimplexP<dim>(1),
                               degree == 1 ? dealii::QGaussSimplex<dim>(2) :
                                                     strain_rule<dim>(degree),
@@ -76,6 +82,9 @@ namespace Debond
   {
     if (temperature_changes.empty())
       return;
+    // The load of thermal strains is int theta C alpha : eps(phi_k), by the
+    // same rule as the stiffness: a free body that is heated evenly has
+    // displacements without stress to rounding.
     const auto stresses = materials.transformed(
       [](const Material &material) { return material.thermal_stress<dim>(); });
     const auto                                  &fe = dof_handler.get_fe();

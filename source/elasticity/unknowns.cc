@@ -22,6 +22,8 @@ namespace Debond
     double
     diameter_of(const dealii::Triangulation<dim> &triangulation)
     {
+      // A rank has the vertices of its own cells and of ghosts only, so that
+      // the corners of the box are reduced over all ranks.
       auto [lower, upper] =
         dealii::BoundingBox<dim>(triangulation.get_vertices())
           .get_boundary_points();
@@ -46,6 +48,10 @@ namespace Debond
         if (const auto field = supports.normals.find(face.id);
             field != supports.normals.end())
           {
+            // A face is flat and has one normal, which is that of the field in
+            // its middle. It is divided by its largest component first, so that
+            // squares of numbers of any size neither overflow nor vanish. It
+            // has to point out of the body, by more than rounding.
             dealii::Point<dim> middle;
             for (unsigned int v = 0; v < dim; ++v)
               middle += face.positions[v] / static_cast<double>(dim);
@@ -99,6 +105,12 @@ namespace Debond
           "Boundary conditions: " + boundary_name(conditions.names, id) +
           " is both clamped and a contact boundary.");
 
+    // deal.II's distribution numbers the dim components at a vertex or an edge
+    // one after the other, so that node n has the unknowns from dim n on. That
+    // is assumed everywhere. The constructor continues in an order in which
+    // each step needs what the ones before it have found: faces, coefficients
+    // and pairs; what supports prescribe at nodes; contact nodes with their
+    // frames; the change of basis; and at last the rigid motions that remain.
     dofs.distribute_dofs(fe);
     const auto faces = [&](const std::set<dealii::types::boundary_id> &ids) {
       return ids.empty() ? std::vector<BoundaryFace<dim>>() :
@@ -111,7 +123,10 @@ namespace Debond
       contact_ids.erase(id);
     std::vector<BoundaryFace<dim>>       contact = faces(contact_ids);
     const std::vector<BoundaryFace<dim>> low     = faces(conditions.low_sides);
-    std::vector<BoundaryFace<dim>>       with_coefficients = contact;
+    // Both sides of an interface need Bernstein coefficients, because the jump
+    // of two quadratic traces is bounded by its coefficients only if both
+    // traces have them.
+    std::vector<BoundaryFace<dim>> with_coefficients = contact;
     with_coefficients.insert(with_coefficients.end(), low.begin(), low.end());
     const unsigned int n_nodes = dofs.n_dofs() / dim;
     change_of_basis.set(BasisStep::coefficients,
@@ -134,8 +149,10 @@ namespace Debond
     axis_nodes = node_supports.on_axis();
     node_supports.glue(node_pairs);
     names_of_supports = node_supports.names();
-    // Contact nodes of an interface are the first nodes of pairs, whose
-    // unknowns are the jumps.
+    // The faces of an interface are those of its high side, and its contact
+    // nodes are the first nodes of pairs, whose unknowns are the jumps. If the
+    // first node is on the low side after an exchange, the faces take its
+    // number.
     std::map<unsigned int, unsigned int> first_of;
     for (const auto &pair : node_pairs.all())
       first_of[pair.second] = pair.first;
@@ -145,6 +162,9 @@ namespace Debond
             entry != first_of.end())
           face.indices[n] = entry->second;
 
+    // The normals of the foundation replace those of the faces before these are
+    // grouped to nodes. Nodes of the contact boundary are constrained together
+    // with their frames, all others at the end.
     set_normals(supports, contact);
     constrained   = ConstrainedDofs<dim>(dofs.n_dofs(), supports);
     contact_space = make_contact_space(
@@ -161,10 +181,17 @@ namespace Debond
   void
   ElasticUnknowns<dim>::find_free_motions(std::vector<Support<dim>> held)
   {
+    // First the motions that supports leave free: with any of them A is
+    // singular, and bonds and foundation have to hold the body. Then contact
+    // nodes count as supports along their normals, and along tangents in which
+    // bonds shear. A motion that remains moves no bond at all, so that nothing
+    // in the problem resists it: it is an error of the scene.
     const double diameter = diameter_of(dofs.get_triangulation());
     const std::vector<std::string> places  = find_bodies();
     const auto                     in_body = [this](Support<dim> &support) {
       support.body = body_of(support.node);
+      // At a first node the prescribed displacement is the jump, relative to
+      // the body of the second node.
       if (const auto *row = basis().find(BasisStep::jumps, support.node))
         support.other = body_of(row->others[0].first);
     };
@@ -172,6 +199,8 @@ namespace Debond
     free_motions = free_rigid_motions(held, symmetry(), diameter, places);
     if (free_motions.motions.empty())
       return;
+    // The node is found from its unknown, to know the body or the two bodies
+    // that it belongs to.
     const auto hold = [&](const dealii::Point<dim>     &position,
                           const dealii::Tensor<1, dim> &direction,
                           const unsigned int            unknown) {
@@ -208,7 +237,11 @@ namespace Debond
   {
     if (node_pairs.empty())
       return {""};
-    // Of each node the least number of one that it is joined to.
+    // Bodies are connected components of nodes that have cells in common. Each
+    // node gets the least number among those it is joined to, by passes over
+    // the own cells until nothing changes; after each pass ranks take the
+    // minimum for nodes that they share. All ranks see the same numbers then,
+    // so that they stop at the same pass.
     bodies.resize(n_dofs() / dim);
     std::iota(bodies.begin(), bodies.end(), 0u);
     std::vector<unsigned int>                    before;
@@ -260,8 +293,10 @@ namespace Debond
     const dealii::IndexSet &own = dofs.locally_owned_dofs();
     for (const auto &cell : owned_cells(dofs))
       {
-        // The mapping is affine, and MappingFE would evaluate all its shape
-        // functions at each point.
+        // The mapping is affine, x = x_0 + sum of xi_d (x_d - x_0), and
+        // MappingFE would evaluate all its shape functions at each point. Each
+        // rank fills in the nodes that it owns, and the sum over ranks makes
+        // the list whole.
         const dealii::Point<dim> origin = cell->vertex(0);
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < cell_dofs.size(); i += dim)
@@ -292,7 +327,11 @@ namespace Debond
     std::iota(order.begin(), order.end(), 0U);
     if (number_of_ranks(communicator()) == 1)
       return order;
-    // On one rank they are numbered as the cells come to them.
+    // On one rank deal.II numbers degrees of freedom as the cells come to them.
+    // The first visit of each, as the number of the cell in the whole mesh
+    // times the unknowns of a cell plus the place there, is the same whatever
+    // the number of ranks is; sorting by it gives the numbers of one rank.
+    // Products may exceed 32 bits.
     const std::uint64_t                          n = fe.dofs_per_cell;
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
     // The largest number would be -1 for MPI::min().
@@ -324,6 +363,7 @@ namespace Debond
   DofVector
   ElasticUnknowns<dim>::lifting(const LoadFactors factors) const
   {
+    // Prescribed displacements grow with their factor, gaps do not.
     DofVector G(n_dofs());
     if (has_prescribed_displacements())
       G.equ(factors.displacements, constrained.displacements());
@@ -350,6 +390,8 @@ namespace Debond
   ElasticUnknowns<dim>::from_cartesian(
     const DofVector &cartesian_displacement) const
   {
+    // The lifting is that of the whole load. Constrained entries of w are zero
+    // by definition, whatever the displacement has there.
     DofVector result = basis().to_unknowns(cartesian_displacement);
     if (has_lifting())
       result -= lifting();
@@ -388,6 +430,9 @@ namespace Debond
   std::vector<DofVector>
   ElasticUnknowns<dim>::rigid_body_modes() const
   {
+    // All bodies have the same motion, in which the jumps between them are
+    // zero. A rotation turns the first axis of its plane to the second one,
+    // which about y, in the plane of x and z, is the negative direction.
     constexpr unsigned int                     n = dim * (dim + 1) / 2;
     std::vector<std::vector<RigidMotion<dim>>> motions;
     for (unsigned int k = 0; k < n; ++k)

@@ -97,8 +97,8 @@ namespace Debond
       children[1].boundaries[k - 1] =
         dealii::numbers::internal_face_boundary_id;
 
-      // The tag counts down from dim to 1, in dim generations, after which each
-      // edge of a simplex has been halved and the cycle begins anew.
+      // The tag counts down from dim to 1 over dim generations, and then the
+      // cycle begins again.
       children[0].tag = children[1].tag = k > 1 ? k - 1 : last;
       return children;
     }
@@ -357,7 +357,7 @@ namespace Debond
         cells[c].cuts_left = times[c];
         cells[c].whole     = c;
       }
-    // Cells are cut in rounds over all of them, until none has cuts left and
+    // Cells are cut in rounds over all of them, until none has cuts to do and
     // none has the middle of one of its edges as a hanging node. A cell may be
     // cut several times in the following rounds, since the edge with the middle
     // need not be its refinement edge. The rounds end by the compatibility of
