@@ -165,8 +165,8 @@ namespace Debond
         // the largest one first, the point lies in the pyramid of that face,
         // and in 3D in the triangle of that face towards the edge of the second
         // one. The barycentric coordinates are the differences of successive
-        // |t_d|, beginning with 1 - |t_d| for the centre, and the last one is
-        // divided between the two ends of the edge.
+        // |t_d|, beginning with 1 - |t_d| for the centre; what remains is
+        // divided between the two ends of the edge by the last coordinate.
         dealii::Tensor<1, dim>        t;
         Place                         at;
         std::array<unsigned int, dim> by_size;

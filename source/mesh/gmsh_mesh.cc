@@ -86,8 +86,9 @@ namespace Debond
                                                   data.cells,
                                                   data.faces);
         // deal.II needs positive volumes and, for quadrilaterals and hexahedra,
-        // edges that cells at them direct alike, which files do not promise.
-        // Simplices have been turned already and need no such order.
+        // cells that agree on the direction of the edges they share, which
+        // files do not promise. Simplices have been turned already and need no
+        // such order.
         if (is_hypercube)
           {
             dealii::GridTools::invert_cells_with_negative_measure(data.vertices,
