@@ -30,6 +30,12 @@ namespace Debond
               const unsigned int      height,
               const unsigned int      width)
     {
+      // Rows and columns of Epetra's matrix are those of single unknowns; both
+      // follow each other by nodes, so that quotients by the height and the
+      // width of the blocks are nodes. Columns are local numbers there and
+      // become those of the whole. The rows of a node may have different
+      // columns, and the blocks in these are zero where a row has none; a node
+      // has few, so that a linear search finds them.
       Prolongation result;
       result.n_own_columns = P.DomainMap().NumMyElements() / width;
       result.rows.height   = height;
@@ -79,6 +85,11 @@ namespace Debond
     for (const DistributedVector &mode : near_null_space)
       modes.insert(modes.end(), mode.begin(), mode.end());
     const auto n_modes = static_cast<unsigned int>(near_null_space.size());
+    // ML makes its whole hierarchy, of which the prolongations alone are used:
+    // without smoothers and without a factor of its coarsest level. "PDE
+    // equations" keeps the unknowns of a node in one aggregate. "Uncoupled"
+    // aggregates do not extend over ranks, so that coarse nodes belong to the
+    // rank of their fine ones.
     Teuchos::ParameterList parameters;
     check(ML_Epetra::SetDefaults("SA", parameters));
     parameters.set("ML output", 0);
@@ -102,6 +113,9 @@ namespace Debond
     std::vector<Prolongation> result;
     for (int l = 1; l < hierarchy->ML_num_actual_levels; ++l)
       {
+        // Pmat[l] leads from level l to l - 1, 0 being the finest. Only there a
+        // node has its displacements for unknowns; an aggregate has one for
+        // each mode. The copy that ML makes here is the caller's to delete.
         Epetra_CrsMatrix *P = nullptr;
         check(ML_Operator2EpetraCrsMatrix(&hierarchy->Pmat[l], P));
         const std::unique_ptr<Epetra_CrsMatrix> owner(P);

@@ -15,6 +15,9 @@ namespace Debond
     , n_eliminated(elimination.n_eliminated())
     , n_kept(elimination.n_kept)
   {
+    // A_is has the rows of eliminated unknowns that this rank owns, and zeros
+    // in all others, so that products with A_is or its transpose are parts,
+    // which sum() adds up over the ranks.
     S.reinit(n_kept, n_kept);
     const std::vector<int> position = elimination.positions(n_rows);
     std::vector<Eigen::Triplet<double>> couplings;
@@ -36,6 +39,10 @@ namespace Debond
   void
   BlockFactor::finish(const MatrixOnRanks &matrix)
   {
+    // S is dense and whole on each rank, since all that is nonsmooth works on
+    // it everywhere. Only the first rank is sure to have it yet. That rank also
+    // makes the factor and hands it out, so that all have the same bits of both
+    // and take the same decisions.
     for (unsigned int i = 0; i < n_kept; ++i)
       for (unsigned int j = 0; j < i; ++j)
         S(j, i) = S(i, j);
@@ -48,6 +55,8 @@ namespace Debond
     };
     broadcast(S);
 
+    // Of a semidefinite A, S_+ = S + diag(A_ss) is factorised. Each diagonal
+    // entry is known to the owner of its row.
     L_ss                     = S;
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_kept);
     for (unsigned int k = 0; k < n_kept; ++k)
@@ -88,6 +97,10 @@ namespace Debond
   ReducedLoad
   BlockFactor::reduce(const DofVector &f) const
   {
+    // With x = A_ii^{-1} f_i the eliminated unknowns are at equilibrium for s =
+    // 0: the energy is c_0 = -1/2 f_i'x, and the kept unknowns see the load g =
+    // f_s - A_si x. The own part of the load is f_i itself, since expand()
+    // solves anew.
     Eigen::VectorXd f_i(n_eliminated);
     for (unsigned int i = 0; i < n_eliminated; ++i)
       f_i(i) = f(elimination.unknowns[i]);
@@ -109,6 +122,8 @@ namespace Debond
   DofVector
   BlockFactor::expand(const ReducedLoad &load, const VectorView &s) const
   {
+    // u_i = A_ii^{-1} (f_i - A_is s): a given s acts on the others through the
+    // couplings, whose products the ranks have in parts.
     Eigen::VectorXd force = A_is * s;
     sum(force);
     Eigen::VectorXd x(n_eliminated + n_kept);

@@ -53,6 +53,10 @@ namespace Debond
         in_F.clear();
         return;
       }
+    // Row i has changed if any of its entries differs from that of which the
+    // factor was made. L^{-1} times the column of a row that has changed, now
+    // or at the last comparison, is that of another column and is forgotten;
+    // L^{-1} times a unit vector depends on L alone.
     std::vector<char> changes(has_changed.size(), 0);
     for (Eigen::Index j = 0; j < M.cols(); ++j)
       for (Eigen::Index i = j; i < M.rows(); ++i)
@@ -70,6 +74,8 @@ namespace Debond
   BorderedCholesky::restrict_to(const std::vector<unsigned int> &now_free,
                                 const Matrix                    &M)
   {
+    // The border is tried first. If it is too large or seems indefinite, a new
+    // factor of M_ff decides, which starts with an empty border.
     free         = now_free;
     n_operations = 0.;
     if (make_border(M))
@@ -109,6 +115,10 @@ namespace Debond
     const ColumnOf                          &column_of,
     std::map<unsigned int, Eigen::VectorXd> &known)
   {
+    // Active sets change by a few indices at a time, so most columns of the
+    // border have been there before. The others are solved for by one call,
+    // whose triangular solves work on all of them at once: n^2 / 2
+    // multiplications a column.
     std::vector<unsigned int> missing;
     for (const unsigned int i : indices)
       if (known.count(i) == 0)
@@ -149,6 +159,8 @@ namespace Debond
   {
     if (in_F.empty())
       return false;
+    // An index of F whose row has changed is in both sets: its old row is
+    // removed by a multiplier, and the new one added to the border.
     std::vector<char> is_free(M.rows(), 0);
     for (const unsigned int i : free)
       is_free[i] = 1;
@@ -187,6 +199,12 @@ namespace Debond
       known_removed);
     n_operations += border * border * (0.5 * size + border / 3.);
 
+    // Elimination of x_F and then of the multipliers leaves a system with P for
+    // x_N alone. With W = I_R' M_FF^{-1} I_R = Y_R'Y_R and X = L_W^{-1} Y_R'Y_N
+    //
+    //     P = M_NN - Y_N'Y_N + X'X,
+    //
+    // where X'X takes back what the removed indices had given to Y_N'Y_N.
     of_W.compute(product(Y_R, Y_R));
     X = of_W.matrixL().solve(product(Y_R, Y_N));
     // M_ff is positive definite if and only if this Schur complement is.
@@ -204,6 +222,15 @@ namespace Debond
   void
   BorderedCholesky::solve_in_place(Eigen::VectorXd &b) const
   {
+    // With y = L^{-1} b_F, where b is zero at removed indices, and v = L_W^{-1}
+    // Y_R'y,
+    //
+    //     x_N    = P^{-1} (b_N - Y_N'y + X'v),
+    //     lambda = L_W^{-T} (v - X x_N),
+    //     x_F    = L^{-T} (y - Y_N x_N - Y_R lambda).
+    //
+    // x_F is zero at removed indices but for rounding, and these entries are
+    // not returned.
     const auto      lower = L.triangularView<Eigen::Lower>();
     Eigen::VectorXd y     = Eigen::VectorXd::Zero(L.rows()), b_N(added.size());
     const auto      is_added = [this](const unsigned int i) {

@@ -67,6 +67,10 @@ namespace Debond
                             const double                             diagonal,
                             const double                             tolerance)
   {
+    // The new row l of the factor has L l = column. The new pivot, diagonal -
+    // |l|^2, is what the new row has that the others do not: the squared
+    // distance of its vector from their span if K is a Gram matrix. Where it is
+    // rounding, the factor is not extended.
     Eigen::VectorXd row = column;
     factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(row);
 
@@ -85,6 +89,10 @@ namespace Debond
   void
   UpdatableCholesky::remove(const unsigned int k)
   {
+    // Without row and column k the leading block and the rows below it stay,
+    // and the trailing block loses the part l l' of column k from its product:
+    // its factor L_33 becomes that of L_33 L_33' + l l', a rank-one update,
+    // which is stable.
     const unsigned int    trailing = n - k - 1;
     const Eigen::VectorXd deleted  = factor.col(k).segment(k + 1, trailing);
 
@@ -107,6 +115,8 @@ namespace Debond
   UpdatableCholesky::update_trailing(const unsigned int          first,
                                      Eigen::Ref<Eigen::VectorXd> w)
   {
+    // A Givens rotation of column k of L and w makes the k-th entry of w zero,
+    // and leaves LL' + ww' as it is. hypot() does not overflow.
     for (unsigned int k = first; k < n; ++k)
       {
         double      &diagonal = factor(k, k);
@@ -130,8 +140,12 @@ namespace Debond
   UpdatableCholesky::downdate(const Eigen::Ref<const Eigen::VectorXd> &w,
                               const double tolerance)
   {
-    // Golub and Van Loan, Section 6.5.4: rotate (p, rho), with L p = w, onto
-    // the last unit vector; the same rotations take L to the new factor.
+    // Golub and Van Loan, Section 6.5.4: rotate (p, rho), with L p = w and
+    // rho^2 = 1 - |p|^2, onto the last unit vector; the same rotations take L
+    // to the new factor. rho^2 is also the ratio of the determinants of K - w
+    // w' and K, and is 1 - w' K^{-1} w. It decides before anything is changed,
+    // so that K - w w' which is not safely definite leaves the factor as it
+    // was.
     Eigen::VectorXd p = w;
     factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(p);
 
@@ -201,6 +215,7 @@ namespace Debond
     LapackInteger       info;
     dealii::potri("L", &n, result.data(), &lda, &info);
     AssertThrow(info == 0, dealii::ExcInternalError());
+    // LAPACK sets the lower triangle only.
     result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
     return result;
   }

@@ -33,6 +33,8 @@ namespace Debond
 
 
 
+    /// Frees an object of CHOLMOD, which takes a pointer to the pointer and the
+    /// workspace in which it has been allocated.
     template <typename Object, int (*release)(Object **, cholmod_common *)>
     struct Release
     {
@@ -71,6 +73,10 @@ namespace Debond
             const unsigned int n_kept,
             cholmod_common    &common)
     {
+      // CAMD is minimum degree with constraints: unknowns of the first group
+      // are eliminated before those of the second. Fill-in among the kept
+      // unknowns is what it is, since their trailing block is S and dense in
+      // any order.
       const int        n = static_cast<int>(matrix->nrow);
       std::vector<int> group(n, 0), permutation(n);
       // Numbers of groups are below n, which a single unknown has to heed.
@@ -79,13 +85,16 @@ namespace Debond
       if (!cholmod_camd(
             matrix, nullptr, 0, group.data(), permutation.data(), &common))
         throw std::bad_alloc();
-      // CAMD keeps the groups apart but not the order within the last one.
+      // CAMD keeps the groups apart but not the order within the last one. They
+      // are put back into their own order, so that S has its rows and columns
+      // as the caller numbers them.
       for (unsigned int k = 0; k < n_kept; ++k)
         permutation[n - n_kept + k] = n - n_kept + k;
 
       common.nmethods           = 1;
       common.method[0].ordering = CHOLMOD_GIVEN;
       // A postordering is free to mix the kept unknowns with the others.
+      // Without it the permutation of the factor is the given one.
       common.postorder = 0;
       return Symbolic(
         cholmod_analyze_p(matrix, permutation.data(), nullptr, 0, &common),
@@ -104,7 +113,11 @@ namespace Debond
         , n_kept(elimination.n_kept)
         , n_rows(A.m())
       {
-        // CHOLMOD factorises nothing less.
+        // CHOLMOD factorises no empty matrix. If A is semidefinite the diagonal
+        // of A_ss is added to A first, which makes it definite if no rigid
+        // motion is zero on all of s. Eliminated unknowns do not see what is
+        // added to A_ss, so that the Schur complement becomes S_+ = S + D and D
+        // is subtracted again.
         if (n > 0)
           factorize(A, elimination.is_semidefinite ? 2. : 1.);
         L_ss = trailing_block();
@@ -120,6 +133,10 @@ namespace Debond
       ReducedLoad
       reduce(const DofVector &f) const override
       {
+        // With y = L^{-1} P f the energy 1/2 u'A u - f'u of eliminated unknowns
+        // at equilibrium with s = 0 is -1/2 |y_i|^2. As S_+ = L_ss L_ss' and g
+        // = L_ss y_s, 1/2 |y_s|^2 is 1/2 g'S_+^{-1} g, without another
+        // solution.
         Eigen::VectorXd right_side(n);
         for (int i = 0; i < n; ++i)
           right_side(i) = f(elimination.unknowns[i]);
@@ -135,6 +152,9 @@ namespace Debond
       DofVector
       expand(const ReducedLoad &load, const VectorView &s) const override
       {
+        // The last rows of L'x = y read L_ss'x_s = y_s. With L_ss's in place of
+        // y_s the back substitution finds x_s = s, and x_i at equilibrium with
+        // it. s is then copied, so that rounding does not change it.
         Eigen::VectorXd x = load.own;
         x.tail(n_kept) =
           factor_of_kept().transpose().triangularView<Eigen::Upper>() * s;
@@ -172,6 +192,12 @@ namespace Debond
         dealii::FullMatrix<double> block(n_kept, n_kept);
         if (n_kept == 0)
           return block;
+        // A supernode of CHOLMOD is a range of columns with the same rows
+        // below: super has the first column of each, pi the first of its row
+        // numbers in s, px the first of its values in x, a dense block by
+        // columns. The first rows of the block are those of its own columns, so
+        // that row r of column c is in the lower triangle for r >= c. A
+        // supernode may begin before the kept unknowns and extend into them.
         const int             first = n - n_kept;
         const cholmod_factor *L     = factor->get();
         const int            *super = static_cast<const int *>(L->super);
@@ -197,6 +223,9 @@ namespace Debond
       factorize(const dealii::SparseMatrix<double> &A,
                 const double                        diagonal_factor)
       {
+        // A without the rows and columns that are left out, in the order of the
+        // elimination. Entries are counted first, as CHOLMOD's arrays do not
+        // grow.
         const std::vector<int> position = elimination.positions(A.m());
 
         // The upper triangle by columns, which is the lower one by rows.
@@ -229,6 +258,8 @@ namespace Debond
           }
         starts[n] = static_cast<int>(next);
 
+        // Supernodes give S by dense kernels, and final_ll keeps the factor as
+        // LL', of which trailing_block() reads the last columns.
         common.supernodal = CHOLMOD_SUPERNODAL;
         common.final_ll   = 1;
         factor.emplace(analyse(matrix.get(), n_kept, common));
@@ -240,7 +271,9 @@ namespace Debond
               "Condensation: the ordering did not keep the "
               "contact normals last.");
 
-        // What is more than that the system would end the program for.
+        // What is more than that the system would end the program for. Linux
+        // grants an allocation before there is memory for it, so that it would
+        // not fail here.
         if (8. * static_cast<double>(L->xsize) > memory_left(0.))
           throw std::bad_alloc();
         cholmod_factorize(matrix.get(), L, &common);
@@ -280,6 +313,10 @@ namespace Debond
               const std::vector<unsigned int> &kept,
               const unsigned int               n_components)
     {
+      // The graph has a node of the mesh for each of its unknowns together,
+      // which makes it n_components^2 times smaller than that of A. Each rank
+      // adds the columns of its own nodes, with the upper triangle alone. A
+      // node is kept with all its unknowns if one of them is.
       const unsigned int n = matrix.A.m() / n_components;
       std::vector<char>  is_kept(n, 0);
       for (const unsigned int i : kept)
@@ -288,6 +325,8 @@ namespace Debond
         std::count(is_kept.begin(), is_kept.end(), 1));
       NodeGraph graph{n, n_kept, {}, {}};
 
+      // In each group, the eliminated and the kept nodes, the order is that of
+      // the mesh.
       std::vector<int> position(n);
       int              next[2] = {0, static_cast<int>(n - n_kept)};
       for (unsigned int node = 0; node < n; ++node)
@@ -318,6 +357,9 @@ namespace Debond
     FactorisationCost
     cost_of(NodeGraph graph, const unsigned int n_components)
     {
+      // The work and the entries of a factor of the graph, times those of dense
+      // blocks: n_components^3 and n_components^2. The analysis alone is made,
+      // for which a simplicial one is enough; it has no values.
       Common common;
       common.supernodal       = CHOLMOD_SIMPLICIAL;
       cholmod_triplet entries = {};
@@ -367,6 +409,9 @@ namespace Debond
     if (!matrix.is_shared())
       return cost_of(std::move(graph), n_components);
 
+    // The first rank analyses the entries of all, while the others wait for its
+    // result. An exception on it alone would leave them waiting for ever, so
+    // that a lack of memory becomes a number that all of them get.
     append_from_others(matrix.ranks, graph.rows);
     append_from_others(matrix.ranks, graph.columns);
     // Less than nothing says that memory was short.

@@ -19,6 +19,8 @@ namespace Debond
         gather(rows,
                dealii::Utilities::MPI::sum(rows.n_rows(), ranks) * rows.width))
   {
+    // Changes by truncation stay within the pattern, so that it is analysed
+    // once.
     solver.analyzePattern(matrix);
   }
 
@@ -27,6 +29,10 @@ namespace Debond
   void
   CoarsestFactor::factorise(const NumberedRows &change)
   {
+    // All ranks gather the few rows that change and factorise the same matrix.
+    // It begins with the unchanged one each time, so that changes do not
+    // accumulate, and they are within its pattern, so that coeffRef() inserts
+    // nothing.
     Eigen::SparseMatrix<double>       now     = matrix;
     const Eigen::SparseMatrix<double> changes = gather(change, matrix.cols());
     for (int j = 0; j < changes.outerSize(); ++j)
@@ -36,6 +42,10 @@ namespace Debond
           double &value = now.coeffRef(entry.row(), j);
           value         = changed(value, entry.value(), entry.row() == j);
         }
+    // Truncation leaves the modes of an aggregate dependent if few of its
+    // unknowns are free, and the matrix singular. In a preconditioner a
+    // slightly larger diagonal only bounds the size of corrections along such
+    // modes. A matrix that is no coarse one is factorised as it is.
     now.diagonal() *= larger_diagonal;
     solver.factorize(now);
     if (solver.info() != Eigen::Success)
@@ -50,6 +60,9 @@ namespace Debond
   CoarsestFactor::solve(SinglePrecisionVector       &x,
                         const SinglePrecisionVector &b) const
   {
+    // Each rank puts its own forces in their places; the sum over the ranks
+    // gives all of them to each rank, which solves for all unknowns and keeps
+    // its own, so that nothing has to be sent back.
     Eigen::VectorXd   all   = Eigen::VectorXd::Zero(matrix.cols());
     const std::size_t begin = b.get_partitioner()->local_range().first;
     const std::size_t n     = b.locally_owned_size();
@@ -67,6 +80,8 @@ namespace Debond
   Eigen::SparseMatrix<double>
   CoarsestFactor::gather(const NumberedRows &own, const Eigen::Index n) const
   {
+    // Blocks become entries of a matrix of single unknowns. Each row comes from
+    // one rank, so that no entry occurs twice.
     std::vector<Eigen::Triplet<double>> entries;
     for (const NumberedRows &M : dealii::Utilities::MPI::all_gather(ranks, own))
       for (unsigned int r = 0; r < M.n_rows(); ++r)

@@ -10,6 +10,9 @@ namespace Debond
     std::shared_ptr<const EliminationFactor>
     factorise(const MatrixOnRanks &A, const Elimination &elimination)
     {
+      // CHOLMOD knows no ranks, and on one rank it is asked because it gives
+      // the whole of L_ss, from which g and energies follow without solutions
+      // of their own.
       if (A.is_shared())
         return make_mumps_factor(A, elimination);
       return make_cholmod_factor(A.A, elimination);

@@ -7,6 +7,8 @@ namespace Debond
     : MatrixOnRanks(A)
     , values(A.A.m())
   {
+    // The columns of own rows that belong to other ranks are the ghosts of each
+    // product. They are found once; a matrix of one rank has none.
     std::vector<dealii::types::global_dof_index> others;
     if (is_shared())
       for (const auto row : own_rows)
@@ -25,6 +27,10 @@ namespace Debond
   const std::vector<double> &
   DistributedMatrix::at_columns(const DistributedVector &v) const
   {
+    // One exchange brings the ghosts. They are copied with the own values to an
+    // array as long as the whole vector, since deal.II's matrix has columns by
+    // their numbers in the whole: 8 bytes an unknown spare a translation for
+    // each entry. Places that no own row looks at keep what they had.
     with_ghosts.copy_locally_owned_data_from(v);
     with_ghosts.update_ghost_values();
     const auto  &partitioner = *with_ghosts.get_partitioner();
@@ -52,7 +58,8 @@ namespace Debond
   DistributedMatrix::product(const unsigned int         row,
                              const std::vector<double> &v) const
   {
-    // Sums of several terms need not wait for each other.
+    // With four sums an addition need not wait for the one before it. A row is
+    // on one rank with all its columns, so that no sum goes over ranks.
     auto       entry = A.begin(row);
     const auto term  = [&entry, &v]() {
       const double value = entry->value() * v[entry->column()];
@@ -89,6 +96,8 @@ namespace Debond
   std::vector<unsigned int>
   DistributedMatrix::rows_of(const std::vector<unsigned int> &columns) const
   {
+    // A rank has the columns of its own rows only, and a column that is meant
+    // may belong to another rank; so all own rows are searched for it.
     std::vector<bool> is_meant(A.n(), false);
     for (const unsigned int column : columns)
       is_meant[column] = true;

@@ -23,6 +23,9 @@ namespace Debond
                     const std::function<bool(unsigned int)> &is_excluded,
                     const bool                               is_semidefinite)
   {
+    // The eliminated unknowns come first in ascending order, as factorisations
+    // want them, and then the kept ones in the order in which the caller has
+    // them, which becomes that of S and g.
     Elimination       result{{},
                        static_cast<unsigned int>(kept.size()),
                        is_semidefinite};
@@ -45,6 +48,9 @@ namespace Debond
       static_cast<dealii::types::blas_int>(S.m());
     if (n_kept == 0)
       return 1.;
+    // LAPACK estimates the norm of the inverse by a few solutions with the
+    // factor, in O(n^2), and needs the norm of the matrix for its reciprocal
+    // condition.
     const double                         norm = S.l1_norm();
     double                               reciprocal;
     std::vector<double>                  work(3 * n_kept);

@@ -58,7 +58,12 @@ namespace Debond
                     const BlockPattern              &P,
                     const unsigned int               n_columns)
     {
-      // For each row of the product the rows of M that add to it.
+      // Row c of P'MP has a column wherever a row r of M with P(r, c) != 0 has
+      // one and P a column there. So P is transposed first, restricted to the
+      // given rows: "adding" has the rows r of each c, sorted by counting. The
+      // columns of c are then the union over these rows. With the whole pattern
+      // known before any value, the values get one allocation of their final
+      // size.
       std::vector<std::size_t> starts(n_columns + 1, 0);
       const auto               for_all = [&](const auto &work) {
         for (unsigned int r = 0; r < rows.size(); ++r)
@@ -101,6 +106,7 @@ namespace Debond
 
 
 
+    /// A block of constant size, for which Eigen makes products without loops.
     template <typename Number, int n, int m>
     using Block = Eigen::Matrix<Number, n, m, Eigen::RowMajor>;
   } // namespace
@@ -114,6 +120,11 @@ namespace Debond
                    const BlockRows<float>                            &P,
                    const unsigned int                                 n_columns)
   {
+    // Row by row of M: first the row of MP, then P(r, c)'(MP)(r, :) is added to
+    // row c of the product for each column c that P has in row r. M is read
+    // once, one row at a time, so that its rows need not exist all at once, and
+    // no transpose of P with values is needed. Sums are in double precision;
+    // only P is in single precision.
     NumberedRows C = product_pattern(rows, pattern, P, n_columns);
     C.values.assign(C.columns.size() * C.n_entries_of_block(), 0.);
     std::vector<unsigned int> row_of(n_columns);
@@ -131,6 +142,8 @@ namespace Debond
                             end   = P.starts[rows[r] + 1];
           if (begin == end)
             continue;
+          // The blocks of the row of MP stand in the order in which their
+          // columns are met.
           found.clear();
           MP.clear();
           const double *block = blocks(r);
@@ -150,6 +163,8 @@ namespace Debond
               }
           for (std::size_t l = begin; l < end; ++l)
             {
+              // Columns of a row of C ascend, so that a place is found by
+              // bisection.
               const unsigned int i     = row_of[P.columns[l]];
               const auto         first = C.columns.begin() + C.starts[i];
               const auto         last  = C.columns.begin() + C.starts[i + 1];

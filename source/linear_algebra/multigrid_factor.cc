@@ -15,6 +15,8 @@ namespace Debond
   {
     constexpr unsigned int maximum_iterations = 2000;
 
+    /// The cycle stays truncated at the kept unknowns, so that S and all later
+    /// loads are solved for with the same preconditioner.
     class MultigridFactor : public BlockFactor
     {
     public:
@@ -25,6 +27,10 @@ namespace Debond
         , own(matrix.own_rows)
         , cycle(std::move(given_cycle))
       {
+        // With the kept unknowns held at zero and no bonds, the matrix of the
+        // cycle is A_ii beside the diagonal of A_ss. So a right side that is
+        // zero at kept unknowns has a solution that is zero there, and the
+        // others are A_ii^{-1} times it.
         std::vector<unsigned int> held;
         for (unsigned int k = n_eliminated; k < elimination.unknowns.size();
              ++k)
@@ -32,7 +38,11 @@ namespace Debond
             held.push_back(elimination.unknowns[k]);
         cycle->truncate({}, held);
 
-        // A_ss - A_si A_ii^{-1} A_is, column by column.
+        // S = A_ss - A_si A_ii^{-1} A_is, column by column, with a solution
+        // each. A rank has the couplings in its own rows i only, so that the
+        // k-th column of A_is and its product with A_si are sums over the
+        // ranks. The owner of row k adds the entries of A_ss in that row, which
+        // by symmetry are those of the column.
         const std::vector<int> position = elimination.positions(n_rows);
         for (unsigned int k = 0; k < n_kept; ++k)
           {
@@ -51,6 +61,7 @@ namespace Debond
             for (unsigned int i = 0; i < n_kept; ++i)
               S(i, k) = column(i);
           }
+        // Residuals of the solutions make S symmetric up to these only.
         S.symmetrize();
         finish(matrix);
       }
@@ -59,6 +70,10 @@ namespace Debond
       Eigen::VectorXd
       solve(const Eigen::VectorXd &b) const override
       {
+        // Conjugate gradients from zero. The residual that is aimed at may be
+        // below what rounding allows; so the iteration ends where it stagnates,
+        // too, and what has been reached is accepted down to required_residual.
+        // deal.II throws NoConvergence in both cases.
         DistributedVector right(own, ranks), x(own, ranks);
         for (unsigned int i = 0; i < n_eliminated; ++i)
           if (const unsigned int row = elimination.unknowns[i];
@@ -81,6 +96,7 @@ namespace Debond
           }
         catch (const dealii::SolverControl::NoConvergence &)
           {
+            // The negation also refuses a residual that is not a number.
             if (!(control.last_value() <= Tolerance::required_residual * size))
               {
                 std::ostringstream text;
@@ -92,6 +108,7 @@ namespace Debond
                 throw std::runtime_error(text.str());
               }
           }
+        // All ranks get all of the solution as the sum of the parts.
         Eigen::VectorXd result = Eigen::VectorXd::Zero(n_eliminated);
         for (unsigned int i = 0; i < n_eliminated; ++i)
           if (const unsigned int row = elimination.unknowns[i];

@@ -15,6 +15,9 @@ namespace Debond
                 const float            *x,
                 float                  *y)
     {
+      // The sizes of the blocks are constants of the loops, which are unrolled.
+      // M'x goes by rows of M, too, and adds to y wherever the row has a
+      // column, in ghosts as well: these parts belong to other ranks.
       with_sizes(M.height, M.width, [&](const auto height, const auto width) {
         constexpr unsigned int h = decltype(height)::value,
                                w = decltype(width)::value;
@@ -57,6 +60,8 @@ namespace Debond
   LevelMatrix::vmult(SinglePrecisionVector       &dst,
                      const SinglePrecisionVector &src) const
   {
+    // The ghosts of src are set for the product alone: a deal.II vector that
+    // holds ghost values cannot be compressed.
     src.update_ghost_values();
     dst = 0.f;
     add_product<false>(*this, n_rows(), src.begin(), dst.begin());
@@ -68,6 +73,8 @@ namespace Debond
   void
   MultigridLevel::reinit()
   {
+    // The vectors have the ghosts of the level. The polynomial is one in
+    // D^{-1}M, with the inverse diagonal kept as floats.
     for (auto *v : {&x, &b, &r})
       *v = nodes.vector();
     matrix.n_unknowns = x.size();
@@ -82,6 +89,10 @@ namespace Debond
   void
   MultigridLevel::set_change(const NumberedRows &change)
   {
+    // First the rows of the last change get back what was stored of them, bit
+    // by bit, so that a sequence of changes leaves no rounding behind; then the
+    // rows of the new one are stored and changed. This costs as much as there
+    // are changed rows, and memory for these alone.
     auto saved = unchanged.begin();
     for (const unsigned int row : changed_rows)
       {
@@ -104,6 +115,10 @@ namespace Debond
                          matrix.block(end));
         for (auto k = change.starts[r]; k < change.starts[r + 1]; ++k)
           {
+            // Entries that cancel but for rounding become zero, and a diagonal
+            // of which nothing is left keeps its value. The sum is formed in
+            // double precision from an entry in single precision, which is why
+            // what counts as rounding is that of floats.
             const unsigned int column = change.columns[k];
             float *const       block =
               matrix.block(std::find(matrix.columns.begin() + begin,
@@ -136,6 +151,12 @@ namespace Debond
   void
   MultigridLevel::make_smoother(const bool estimate)
   {
+    // The polynomial is small on [lambda/20, lambda], where lambda is the
+    // largest eigenvalue of D^{-1}M; coarser levels reduce what lies below. Ten
+    // steps of conjugate gradients estimate it, and deal.II adds a fifth, as
+    // they find it from below: the polynomial grows fast beyond lambda. With
+    // zero steps deal.II takes the number given, here the last estimate with
+    // its fifth.
     typename decltype(smoother)::AdditionalData parameters;
     parameters.preconditioner      = inverse_diagonal;
     parameters.degree              = 2;
@@ -168,6 +189,9 @@ namespace Debond
   MultigridLevel::restrict_to_coarser(SinglePrecisionVector       &coarse,
                                       const SinglePrecisionVector &fine) const
   {
+    // Products with own rows of P give parts of coarse rows on other ranks.
+    // They are in the ghosts, and compress() sends them to their owners and
+    // adds them up there.
     coarse = 0.f;
     add_product<true>(prolongation,
                       nodes.n_own(),

@@ -30,6 +30,8 @@ namespace Debond
       explicit Mumps(const MPI_Comm ranks)
         : DMUMPS_STRUC_C()
       {
+        // The first call, with job -1, sets the defaults; what is set before it
+        // are the three fields that it reads, and all controls come after it.
         comm_fortran = MPI_Comm_c2f(ranks);
         par          = 1; // the first rank works, too
         // Symmetric: if told that A is positive definite (1), it changes pivots
@@ -46,6 +48,8 @@ namespace Debond
 
       ~Mumps()
       {
+        // Frees what MUMPS has allocated. As with every job, all ranks have to
+        // call it.
         job = -2;
         dmumps_c(this);
       }
@@ -61,10 +65,14 @@ namespace Debond
       void
       run(const int what)
       {
-        // Allocations that fail, and work and message buffers too small.
+        // Negative INFOG(1) that mean a lack of memory: allocations that fail,
+        // and buffers for work and messages that are too small.
         const std::set<int> no_memory = {
           -5, -7, -8, -9, -11, -13, -14, -15, -17, -18, -19, -20, -22};
-        // Work and message buffers that are too small are made larger.
+        // Of these, buffers that are too small are made larger, by a percentage
+        // of the estimate, until the factorisation ends or largest_increase is
+        // reached. The analysis need not be repeated. All ranks see the same
+        // INFOG and do the same.
         const std::set<int> too_small = {-8, -9, -14, -15, -17, -18, -20};
         job                           = what;
         dmumps_c(this);
@@ -74,6 +82,10 @@ namespace Debond
             control(14) = std::max(100, 3 * control(14));
             dmumps_c(this);
           }
+        // INFOG(12) counts negative pivots and INFOG(25) tiny ones. As it has
+        // been asked for a symmetric factorisation only, MUMPS does not
+        // complain about them, but without them A_ii is definite. -10 is an
+        // exact zero.
         const int  error       = infog[0];
         const bool is_definite = infog[11] == 0 && infog[24] == 0;
         if (error == -10 || (what == 2 && error >= 0 && !is_definite))
@@ -94,6 +106,9 @@ namespace Debond
     bool
     fits_into_memory(const double bytes, const MPI_Comm ranks)
     {
+      // Ranks of one machine share its memory, so that what they need together
+      // has to be compared with what there is. memory_left() is called by all
+      // ranks.
       MPI_Comm machine;
       MPI_Comm_split_type(
         ranks, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
@@ -111,12 +126,16 @@ namespace Debond
         : BlockFactor(matrix, elimination)
         , mumps(ranks)
       {
+        // MUMPS eliminates the first unknowns and leaves the Schur complement
+        // of the kept ones on the first rank. Each rank keeps its own part of
+        // the factor, and gives MUMPS its own rows alone.
         const OwnEntries own = own_entries(matrix);
         if (n_eliminated > 0)
           factorize(own);
         else if (n_kept > 0)
           {
-            // MUMPS wants something to eliminate.
+            // MUMPS wants something to eliminate. Without that S is A_ss, the
+            // sum of what ranks have of it.
             for (std::size_t k = 0; k < own.values.size(); ++k)
               S(own.rows[k] - 1, own.columns[k] - 1) = own.values[k];
             dealii::Utilities::MPI::sum(S, ranks, S);
@@ -137,6 +156,9 @@ namespace Debond
       OwnEntries
       own_entries(const MatrixOnRanks &matrix) const
       {
+        // An entry of the lower triangle is given once, by the owner of its
+        // row. Rows that are left out have no place, and neither have their
+        // columns.
         const std::vector<int> position = elimination.positions(n_rows);
         OwnEntries             own;
         for (const auto row : matrix.own_rows)
@@ -159,6 +181,9 @@ namespace Debond
       void
       factorize(OwnEntries own)
       {
+        // MUMPS keeps pointers to these arrays while it works, not copies. It
+        // stores S by rows in the memory of S itself, of a symmetric matrix the
+        // lower triangle.
         mumps.n       = static_cast<MUMPS_INT>(n_eliminated + n_kept);
         mumps.nnz_loc = static_cast<MUMPS_INT8>(own.values.size());
         mumps.irn_loc = own.rows.data();
@@ -175,7 +200,9 @@ namespace Debond
           }
         mumps.control(7) = 0; // approximate minimum degree
         mumps.run(1);
-        // What is more than that the system would end the program for.
+        // INFO(15) is what the analysis estimates for this rank, in millions of
+        // bytes. Linux would grant more than there is and end the program
+        // later; so all ranks refuse together if one machine has too little.
         const bool fits = fits_into_memory(1e6 * mumps.info[14], ranks);
         if (dealii::Utilities::MPI::min(fits ? 1 : 0, ranks) == 0)
           throw std::bad_alloc();
@@ -186,6 +213,9 @@ namespace Debond
       Eigen::VectorXd
       solve(const Eigen::VectorXd &b) const override
       {
+        // MUMPS solves with A_ii alone, since it has been asked for S. The
+        // right side is read and the solution written on the first rank; the
+        // others have arrays of the same size for what they get from it.
         if (n_eliminated == 0)
           return b;
         // On the first rank, with places for the kept unknowns.

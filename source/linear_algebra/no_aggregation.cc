@@ -13,6 +13,7 @@ namespace Debond
                            const unsigned int,
                            const std::vector<DistributedVector> &)
   {
+    // Matrices so small have no levels with ML either.
     AssertThrow(A.own_rows.size() <= largest_without_aggregates,
                 dealii::ExcNotImplemented());
     return {};

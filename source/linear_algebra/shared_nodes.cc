@@ -32,6 +32,8 @@ namespace Debond
     , n_unknowns_of_node(n_unknowns_of_node)
     , firsts(1, 0)
   {
+    // Own nodes of the ranks follow each other, so that one number a rank says
+    // which rank owns a node, without further messages.
     for (const unsigned int n :
          dealii::Utilities::MPI::all_gather(ranks, n_own))
       firsts.push_back(firsts.back() + n);
@@ -50,6 +52,9 @@ namespace Debond
     std::sort(ghosts.begin(), ghosts.end());
     ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
 
+    // deal.II's partitioner orders ghosts by their numbers in the whole, as it
+    // is done here, so that the local numbers of a node's unknowns in vectors
+    // are those of the node times the number of unknowns.
     const unsigned int n = n_unknowns_of_node;
     dealii::IndexSet   own(n_global() * n), others(n_global() * n);
     own.add_range(begin * n, end * n);
@@ -105,6 +110,10 @@ namespace Debond
   void
   SharedNodes::append_rows_of_ghosts(BlockRows<float> &rows) const
   {
+    // Two exchanges: each rank tells the owners which rows it needs, and gets
+    // them. Both know with whom to speak only from this rank's ghosts, which is
+    // what some_to_some() is for. Rows are asked for in ascending order, and
+    // answers keep it.
     using dealii::Utilities::MPI::some_to_some;
     std::map<unsigned int, std::vector<unsigned int>> wanted;
     for (const unsigned int node : ghosts)
@@ -141,6 +150,9 @@ namespace Debond
         }
     parts = dealii::Utilities::MPI::some_to_some(ranks, parts);
 
+    // Then all summands of own blocks, by pointers, are sorted by row and
+    // column, and neighbours with the same place are added up. A row that is to
+    // exist although no rank has anything for it gets a zero on its diagonal.
     struct Summand
     {
       unsigned int  row, column;
@@ -165,7 +177,10 @@ namespace Debond
     for (unsigned int i = 0; i < n_own(); ++i)
       if (!is_found[i])
         summands.push_back({begin + i, begin + i, zero.data()});
-    // In the order of the ranks where they have the same entry.
+    // The sort is stable, and summands of one place stay in the order in which
+    // they have been added: this rank's own first, then those of others by
+    // rank. So sums do not depend on which message comes first. What comes from
+    // one rank alone is sorted already.
     const auto is_before = [](const Summand &a, const Summand &b) {
       return std::tie(a.row, a.column) < std::tie(b.row, b.column);
     };

@@ -13,6 +13,10 @@ namespace Debond
     void
     make_positive(NumberedRows &M)
     {
+      // An empty column of P leaves a row and a column of P'AP that are zero,
+      // and a zero in each restricted force. With 1 on its diagonal the unknown
+      // stands alone and stays zero. Smoothers see D^{-1} M only, so that the
+      // size of this entry does not count beside those in units of stiffness.
       for (unsigned int r = 0; r < M.n_rows(); ++r)
         for (auto k = M.starts[r]; k < M.starts[r + 1]; ++k)
           for (unsigned int c = 0; M.columns[k] == M.rows[r] && c < M.width;
@@ -35,6 +39,10 @@ namespace Debond
   TruncatedMultigrid::FinestMatrix::vmult(DistributedVector       &dst,
                                           const DistributedVector &src) const
   {
+    // Q from the right, then A + E on all unknowns, and Q + D (I - Q) from the
+    // left. The entries of E are in the pattern of A, so that at_columns() has
+    // fetched from other ranks all values that they need. The diagonal entry of
+    // A keeps the held rows in the unit of the others.
     free_values.copy_locally_owned_data_from(src);
     for (const unsigned int i : held)
       free_values(i) = 0.;
@@ -42,6 +50,8 @@ namespace Debond
     A.multiply(dst, values);
     for (const Entry &entry : E)
       dst(entry.row) += entry.value * values[entry.column];
+    // Ranks give the held unknowns in their own rows. The ghosts of the mask
+    // are fetched where it is needed.
     for (const unsigned int i : held)
       dst(i) = A.A.diag_element(i) * src(i);
   }
@@ -55,6 +65,11 @@ namespace Debond
     : n_components(n_components)
     , finest(A)
   {
+    // From the finest level down, each coarser matrix is the Galerkin product
+    // P'MP of the one before. Products and the coarsest factor are in double
+    // precision; what the levels keep is in single precision. So only the rows
+    // of one level at a time take memory in double precision, and none of the
+    // finest, whose rows come from A itself.
     add_finest();
     // All own rows of the coarsest level so far.
     NumberedRows rows;
@@ -73,6 +88,9 @@ namespace Debond
   void
   TruncatedMultigrid::add_finest()
   {
+    // The pattern of the blocks comes from that of A. The ghosts of the level
+    // are the nodes of other ranks in the columns of own rows; with them known,
+    // columns can be numbered locally and the values be copied, block by block.
     const DistributedMatrix  &A = finest.A;
     const unsigned int        n = n_components;
     SharedNodes               nodes(A.own_rows.n_elements() / n, n, A.ranks);
@@ -84,7 +102,10 @@ namespace Debond
       constexpr unsigned int n_rows = decltype(size)::value;
       for (unsigned int i = 0; i < nodes.n_own(); ++i)
         {
-          // Those of the longest row: others are constrained.
+          // The columns are those of the longest of the node's rows, since a
+          // constrained row has only its diagonal entry. deal.II stores the
+          // diagonal entry of a row first, and unknowns of a node follow each
+          // other, so that nodes are met in runs and nearly sorted.
           const unsigned int first = nodes.global(i) * n_rows;
           unsigned int       row   = first;
           for (unsigned int c = 1; c < n_rows; ++c)
@@ -128,6 +149,10 @@ namespace Debond
   TruncatedMultigrid::finest_blocks(const BlockPattern &pattern,
                                     const unsigned int  node) const
   {
+    // The places of the row's blocks by local numbers of their nodes are looked
+    // up in an array as long as there are local nodes. What earlier rows have
+    // left in it does no harm, as A has no entry outside of the row's own
+    // pattern.
     const dealii::SparseMatrix<double> &A     = finest.A.A;
     const SharedNodes                  &nodes = levels.front()->nodes;
     const std::size_t                   begin = pattern.starts[node];
@@ -158,6 +183,8 @@ namespace Debond
   NumberedRows
   TruncatedMultigrid::finest_rows() const
   {
+    // Without prolongations the finest level is also the coarsest one, and A is
+    // factorised as it is.
     NumberedRows result;
     static_cast<BlockPattern &>(result) = levels.front()->matrix;
     for (unsigned int i = 0; i < result.n_rows(); ++i)
@@ -180,6 +207,13 @@ namespace Debond
   TruncatedMultigrid::add_level(const Prolongation &given,
                                 const NumberedRows &fine_rows)
   {
+    // The rows of P'AP that own rows of A contribute to are computed here, with
+    // the rows of P at own nodes and ghosts; those of coarse nodes of other
+    // ranks are sent to their owners, which add up what they get. Numbers of
+    // coarse nodes are those of the whole until all of them are known that this
+    // rank needs: the columns of its coarse rows, for products with the coarse
+    // matrix, and the columns of P, for prolongations and for changes by
+    // truncation.
     MultigridLevel   &fine = *levels.back();
     BlockRows<float> &P    = fine.prolongation;
     SharedNodes nodes(given.n_own_columns, given.rows.width, fine.nodes.ranks);
@@ -219,6 +253,16 @@ namespace Debond
   TruncatedMultigrid::truncate(const std::vector<Entry>        &E,
                                const std::vector<unsigned int> &held)
   {
+    // Let M = Q (A + E) Q + D (I - Q). The truncated hierarchy is that of the
+    // Galerkin products of M with Q P in place of the finest P: a basis
+    // function of a coarse level is zero at the held unknowns, so that coarse
+    // corrections leave these where they are. As P'Q M Q P = P'AP + P'[Q (A +
+    // E) Q - A]P, a coarser matrix remains the Galerkin product of the finer
+    // one if the bracket is multiplied level by level. It has entries only at
+    // the nodes of E and next to held ones, on the contact boundary; its rows
+    // become fewer on each level, and the patterns of the levels hold it. Since
+    // the product is formed from A anew each time, repeated changes of the
+    // contact set accumulate no rounding.
     finest.E    = E;
     finest.held = held;
     free        = 1.f;
@@ -235,6 +279,9 @@ namespace Debond
             coarsest->factorise(change);
             break;
           }
+        // Columns of P are local numbers of the coarser level; rows that other
+        // ranks own are added up there. Rows that no change reaches are left
+        // out.
         const SharedNodes &nodes = levels[l + 1]->nodes;
         NumberedRows       next  = galerkin_product(
           change.rows,
@@ -254,6 +301,11 @@ namespace Debond
   NumberedRows
   TruncatedMultigrid::finest_change() const
   {
+    // E is sorted by rows, so that one pass over the own nodes meets its
+    // entries in their order. A node has a change if E has an entry in one of
+    // its rows, or if one of the nodes in its columns, itself among them, is
+    // held. Held nodes of other ranks count, too, which takes the ghosts of the
+    // mask.
     const SharedNodes  &nodes   = levels.front()->nodes;
     const BlockPattern &pattern = levels.front()->matrix;
     const unsigned int  n       = n_components;
@@ -283,10 +335,17 @@ namespace Debond
               return is_held[j];
             }))
           continue;
+        // The blocks are those of A + E, then masked by Q from both sides, less
+        // those of A. On the diagonal of a held unknown -a_ii is left, and
+        // changed() makes the entry of the level a_ii again, which is D (I -
+        // Q).
         const double *const A = finest_blocks(pattern, i);
         std::vector<double> blocks(A, A + n * n * (end - begin));
         for (auto e = first; e != entry; ++e)
           {
+            // An entry of E outside of the pattern of A would need values that
+            // no rank has fetched, and a place that the coarser levels do not
+            // have.
             const auto column =
               std::find_if(begin, end, [&](const unsigned int j) {
                 return nodes.global(j) == e->column / n;
@@ -334,7 +393,10 @@ namespace Debond
   TruncatedMultigrid::vmult(DistributedVector       &z,
                             const DistributedVector &r) const
   {
-    // Single precision has its range in any unit.
+    // Forces of any unit are brought near 1, where single precision has its
+    // range, by a power of two, which costs no rounding; the cycle is linear in
+    // r. Forces at held unknowns are set to zero, so that the result is zero
+    // there and does not depend on them.
     const MultigridLevel &level = *levels.front();
     const double          size  = r.linfty_norm();
     const double scale = size > 0. ? std::ldexp(1., -std::ilogb(size)) : 1.;
@@ -351,6 +413,10 @@ namespace Debond
   void
   TruncatedMultigrid::cycle(const unsigned int l) const
   {
+    // One V-cycle from x = 0: a Chebyshev polynomial in D^{-1}M, the correction
+    // from the coarser level, and the same polynomial once more. Its error
+    // operator is self-adjoint in the energy of M, so that smoothing before and
+    // after with the same polynomial makes the cycle symmetric.
     const MultigridLevel &fine = *levels[l];
     if (l + 1 == levels.size())
       {
@@ -360,7 +426,10 @@ namespace Debond
     fine.smoother.vmult(fine.x, fine.b);
     fine.matrix.vmult(fine.r, fine.x);
     fine.r.sadd(-1.f, 1.f, fine.b);
-    // b, x and r are zero at held unknowns, so only corrections may not be.
+    // The prolongation of level 0 is Q P, but P is stored without Q. b, x and r
+    // are zero at held unknowns, as the rows of these have nothing but their
+    // diagonal, so that P'r is (Q P)'r; only the correction P x has to be
+    // masked.
     const MultigridLevel &coarse = *levels[l + 1];
     fine.restrict_to_coarser(coarse.b, fine.r);
     cycle(l + 1);
