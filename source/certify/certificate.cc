@@ -25,6 +25,8 @@ namespace Debond
     equilibrium_problem(const Scene<dim> &scene)
     {
       check_certifiable(scene);
+      // Stresses are sought on the mesh of the displacements, with the same
+      // supports, materials and loads.
       const auto &triangulation =
         scene.problem().unknowns().dof_handler().get_triangulation();
       // A change of temperature enters as the pressure that it would make if
@@ -59,7 +61,8 @@ namespace Debond
       if (!scene.adhesion().points().has_field())
         return law;
       // Theorem 1 has one law for each side, whose mean stands for all its
-      // points. So bonds have to be the same at all points of the rule.
+      // points. So bonds have to be the same at all points of the rule by which
+      // the law is integrated here, which stand for all points of the side.
       std::optional<BondScale> first;
       for (const auto &[barycentric, weight] : side_rule<dim>())
         {
@@ -133,6 +136,8 @@ namespace Debond
       largest = std::max(largest, std::abs(node.gap));
     for (const auto &face : boundary.faces)
       {
+        // Joined faces share the mean of their normals, which is that of a face
+        // only if they are on one plane.
         for (const unsigned int node : face.nodes)
           if (node < boundary.nodes.size() &&
               (boundary.nodes[node].normal - face.normal).norm() >
@@ -209,7 +214,8 @@ namespace Debond
                        const double                   rounding)
     {
       // The infimum of c/2 s^2 + (slope + q) s over s <= 0 is at s = -(q +
-      // slope)/c where that pulls, otherwise at 0.
+      // slope)/c where that pulls, otherwise at 0. Without a curvature the
+      // bonds do not resist, and the infimum is finite only if nothing pulls.
       std::array<double, dim> pull = at_corners;
       for (double &value : pull)
         value += piece.slope;
@@ -293,10 +299,13 @@ namespace Debond
       Eigen::VectorXd u_nu(dim * n);
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          // The integral of the square of the linear function with these means.
+          // The integral of the square of the linear function with the means w
+          // is |I| ((d + 1) |w|^2 - (sum w)^2) / d: d on the diagonal and -1
+          // beside it.
           const double weight = sides[i].measure * pieces[i].curvature / dim;
           for (Eigen::Index k = 0; k < dim; ++k)
             {
+              // The means w_k of the result's own trace, less the gap.
               u_nu(k * n + i) =
                 traces[i].integral(
                   [k](const std::array<double, dim> &lambda,
@@ -308,6 +317,7 @@ namespace Debond
             }
         }
       // Where the displacement is in contact, and what is wrong there is found.
+      // The set of the result is close to that of the minimum with stresses.
       ActiveSet active(dim * n, 0);
       for (Eigen::Index i = 0; i < dim * n; ++i)
         active[i] = u_nu(i) >= -Tolerance::certificate *
@@ -372,6 +382,10 @@ namespace Debond
         for (const Eigen::VectorXd *of : {&moments, &g})
           for (const double traction : at_corners(*of, i))
             largest_traction = std::max(largest_traction, std::abs(traction));
+      // The condensed energy c_0 + 1/2 x'S x - g'x has the work x'(S x - g) of
+      // the tractions on x; without it c_0 - 1/2 x'S x is the complementary
+      // energy with the work along what is prescribed. Side by side int
+      // h(sigma_nu) is added to that.
       certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       const std::vector<Eigen::VectorXd> stresses =
         equilibrium.stresses(condensed->expand(x));
@@ -409,6 +423,7 @@ namespace Debond
               sides[i].measure * std::abs(traces[i].mean());
           certificate.lower += bonds;
           certificate.upper += of_bonds;
+          // The part of the side, int j(s) + sigma_nu s - h(sigma_nu).
           certificate.gaps[sides[i].cell->active_cell_index()] +=
             of_bonds - bonds +
             traces[i].integral([&](const auto &lambda, const double s) {
@@ -517,6 +532,8 @@ namespace Debond
         // is convex it is the whole answer; otherwise its stresses and gaps
         // still tell where to refine.
         bound_fixed_state(equilibrium, laws, fields, displacement, certificate);
+        // Both numbers are moved outwards for the rounding of what is computed
+        // here, and the lower one for that of the elimination as well.
         const double own = own_rounding(certificate, fields.strain_energy(u));
         certificate.upper += own;
         certificate.lower -= certificate.reserve + own;
@@ -525,8 +542,8 @@ namespace Debond
     catch (const EquilibriumError &)
       {
         // Bodies that only bonds hold, for instance, have no such bound, and
-        // rounding may hide that of others. There
-        // may be one for all minima all the same.
+        // rounding may hide that of others. There may be one for all minima all
+        // the same.
         if (trace_constants.empty())
           throw;
         certificate.gaps.clear();
@@ -612,6 +629,8 @@ namespace Debond
     certificate.proof_status = bound.status;
     certificate.proof_nodes  = bound.nodes;
     if (!certificate.gaps.empty())
+      // Refinement serves the bound for branches as they are and the bound for
+      // all of them, so that a cell has the parts of both.
       for (unsigned int i = 0; i < bound.losses.size(); ++i)
         certificate
           .gaps[equilibrium.mesh.contact_sides[i].cell->active_cell_index()] +=
@@ -641,6 +660,9 @@ namespace Debond
         if (!certificate.gaps.empty())
           certificate.gaps[cell] += rests[cell];
       }
+    // The difference between both functionals at u is the work of what the
+    // means leave out. The upper number is for the true loads; the lower one
+    // gives way by as much in either case.
     const double rest = fields.elastic_functional(u) -
                         equilibrium.elastic_functional(fields, displacement);
     if (std::abs(rest) > own_rounding(certificate, fields.strain_energy(u)))

@@ -29,6 +29,8 @@ namespace Debond
       void
       check(Parameters &p, ParameterTable &table) const override
       {
+        // The certificate is a goal of the refinement if it has a target, and
+        // another proof beside the one of the solver.
         p.accuracy.has_goal      = target > 0.;
         p.solver.has_other_proof = kind != CertificateKind::none;
         if (target > 0. && p.solver.method == SolverMethod::euclidean_bundle)
@@ -43,6 +45,12 @@ namespace Debond
                                  "Certificate/Kind");
             return;
           }
+        // What doc/reference/certificate.md does not prove is refused while the
+        // scene is read: tension and shear that the law couples, radii in the
+        // integrals, several bodies, a foundation along which s is not v_nu,
+        // changes of temperature whose stress is no pressure, and laws for
+        // which the branch between two kinks is concave. Bonds that lose their
+        // traction at once are those of Theorem 1.
         const auto refuse = [&table](const bool                      is_so,
                                      const std::string              &reason,
                                      const std::vector<std::string> &others) {

@@ -30,6 +30,8 @@ namespace Debond
         {
           reason = error.what();
         }
+      // The equilibrated stresses have several times as many unknowns as the
+      // displacements, so that they may not fit where these did.
       catch (const std::bad_alloc &)
         {
           reason = "there is not enough memory for the equilibrated stresses";
@@ -78,6 +80,9 @@ namespace Debond
       for (const auto &cell :
            scene.problem().unknowns().dof_handler().active_cell_iterators())
         {
+          // The gap of a cell has the unit of an energy, and that of the sides
+          // below it is in it; divided by the measure of the cell it can be
+          // compared between cells.
           const auto &stress = certificate.stresses[cell->active_cell_index()];
           for (unsigned int k = 0; k < components.size(); ++k)
             fields[k].second.push_back(stress[components[k]]);
@@ -128,6 +133,8 @@ namespace Debond
                           const AdhesiveLaw &law,
                           const std::string &file_name)
     {
+      // In the order of the contact sides, with the ranges of the mean and of
+      // the linear function p of each.
       CsvTable   table;
       const auto add = [&](const std::string &title, const auto &value) {
         table.add(title, certificate.sides, value);
@@ -257,6 +264,8 @@ namespace Debond
                              proof,
                              Interruption::by_signal(),
                              latest_global ? &*latest_global : nullptr);
+    // What is known of the least J on this mesh, before the interval is widened
+    // below, may help on the next one.
     if (certificate->minimum == CertifiedMinimum::global)
       latest_global = certificate;
     // J of the result is by the scene's quadrature, and may lie outside of what
@@ -306,6 +315,7 @@ namespace Debond
         nothing.failure = failure;
         return nothing;
       }
+    // Refinement bisects the cells with the largest gaps.
     return {certificate->width() <= target,
             certificate->width(),
             certificate->gaps,

@@ -85,6 +85,8 @@ namespace Debond
                  const int                     row,
                  Eigen::MatrixXd              &matrix)
     {
+      // A component off the diagonal stands in two places of sigma, so that it
+      // adds to two components of sigma n.
       for (int k = 0; k < n_stress_components<dim>; ++k)
         {
           const auto [a, b] = row_and_column<dim>(k);
@@ -106,7 +108,9 @@ namespace Debond
       // What is zero for them: the divergence in each part, which is the sum of
       // sigma at the corners times the gradients of the barycentric
       // coordinates, normals of the opposite sides; the jump of the traction at
-      // the dim corners of the side between two parts.
+      // the dim corners of the side between two parts. They are independent: 18
+      // for the 27 numbers of a triangle, 66 for the 96 of a tetrahedron, which
+      // leaves 9 and 30.
       Eigen::MatrixXd conditions =
         Eigen::MatrixXd::Zero(dim * (dim + 1) * (2 + dim * dim) / 2,
                               n_stresses<dim>);
@@ -120,6 +124,9 @@ namespace Debond
       };
       for (int i = 0; i <= dim; ++i)
         {
+          // The divergence in part i. The gradient of a barycentric coordinate
+          // is the normal of the opposite side but for a factor that all
+          // corners of the part share.
           const auto &normals =
             SimplexGeometry<dim>(corners_of_part<dim>(corners, i)).normals;
           for (int corner = 0; corner <= dim; ++corner)
@@ -129,6 +136,11 @@ namespace Debond
             for (int corner = 0; corner <= dim + 1; ++corner)
               if (corner != i && corner != j)
                 {
+                  // The side between parts i and j is opposite to corner j of
+                  // the simplex in part i. Its traction is linear, so that it
+                  // is continuous if it is so at its corners: the dim - 1
+                  // corners of the simplex that both parts have, and the
+                  // centroid.
                   const dealii::Tensor<1, dim> &normal =
                     normals[corner_of_part(i, j)];
                   add(i, corner_of_part(i, corner), normal, 1.);
@@ -172,6 +184,10 @@ namespace Debond
           unit[d + 1][d] = 1.;
         return divergence_free<dim>(unit);
       }();
+      // B is constant, so that div_x (B sigma B') = B div_y sigma, and a normal
+      // becomes B^{-T} n but for its length, so that (B sigma B') B^{-T} n = B
+      // sigma n: what is zero or continuous on the reference simplex is so on
+      // the cell.
       const dealii::Tensor<2, dim> B = map_from_reference<dim>(corners);
       // Without it the basis would grow with the size of the cell.
       const double scale = B.norm_square();
@@ -182,6 +198,8 @@ namespace Debond
         for (int l = 0; l < n_stress_components<dim>; ++l)
           {
             const auto [a, b] = row_and_column<dim>(k);
+            // (B sigma B')_ab = sum_pq B_ap sigma_pq B_bq, where sigma_pq and
+            // sigma_qp are one number.
             const auto [p, q] = row_and_column<dim>(l);
             map(k, l)         = B[a][p] * B[b][q] / scale;
             if (p != q)
@@ -207,6 +225,8 @@ namespace Debond
       const double  coupled = lambda / (dim * lambda + 2. * mu);
       // 2 mu C^{-1} at a point, in which shear stresses count twice. The
       // integrals of products of barycentric coordinates come with it below.
+      // For an isotropic material 2 mu C^{-1} sigma = sigma - lambda / (dim
+      // lambda + 2 mu) tr(sigma) 1, with the lambda of the plane in 2D.
       Eigen::Matrix<double, n, n> pointwise;
       pointwise.setIdentity();
       pointwise.template topLeftCorner<dim, dim>().array() -= coupled;
@@ -224,6 +244,7 @@ namespace Debond
                                   (l < dim ? 1. : 2.) * compliance[a][b][c][d];
               }
         }
+      // int lambda_i lambda_j = measure (1 + delta_ij) / ((dim + 1) (dim + 2)).
       Eigen::Matrix<double, n_of_part<dim>, n_of_part<dim>> result;
       for (int i = 0; i <= dim; ++i)
         for (int j = 0; j <= dim; ++j)
@@ -241,7 +262,9 @@ namespace Debond
   {
     const dealii::Tensor<2, dim> B = map_from_reference<dim>(corners);
     measure = std::abs(determinant(B)) / (dim == 2 ? 2. : 6.);
-    // The rows are the gradients of the barycentric coordinates.
+    // The rows are the gradients of the barycentric coordinates. |grad
+    // lambda_k| = |side k| / (dim measure), and it points inwards. The normals
+    // of a closed surface add up to zero.
     const dealii::Tensor<2, dim> inverse = invert(B);
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -268,6 +291,10 @@ namespace Debond
     const SimplexCorners<dim> &corners,
     const Material            &material)
   {
+    // The stress is sigma = balance f + Z y: one that is in equilibrium with
+    // the body force f, and those without divergence, which leave the tractions
+    // continuous. y is the maximiser of the complementary problem for the
+    // displacements l of the sides, so that l ends up as the only unknowns.
     constexpr int            n      = n_stresses<dim>;
     const dealii::Point<dim> centre = centroid<dim>(corners);
 
@@ -283,6 +310,9 @@ namespace Debond
         const SimplexCorners<dim>  points = corners_of_part<dim>(corners, i);
         const SimplexGeometry<dim> part(points);
         for (int k = 0; k < dim; ++k)
+          // The outer side of a part is opposite to the centroid. Its normal is
+          // as long as the side or its area, so that 1 / dim makes the
+          // tractions at the corners the work-conjugates of the means w_k.
           add_traction<dim>(stress_index<dim>(i, k, 0),
                             part.normals[dim],
                             1. / dim,
@@ -294,6 +324,10 @@ namespace Debond
         for (int corner = 0; corner <= dim; ++corner)
           for (int d = 0; d < dim; ++d)
             {
+              // sigma_dd = -(x - centre)_d has the divergence -1 in direction
+              // d, and is linear on the whole simplex, so that its tractions
+              // are continuous. The thermal stress p 1 counts in the energy and
+              // not in the equilibrium.
               const int k   = stress_index<dim>(i, corner, d);
               balance(k, d) = -(points[corner] - centre)[d];
               given(k, dim) = 1.;
@@ -301,10 +335,14 @@ namespace Debond
       }
     given += balance;
 
-    // The stress is the load's particular one plus Z y. Given the displacements
-    // l of the sides it is the one of least complementary energy less the work
-    // on l: an equation with Z'MZ for y, from which stiffness K, force F and
-    // energy follow as for a displacement element.
+    // With the load r = (f, p), given = balance + p 1, and the flexibility M,
+    // the stress of least complementary energy less the work on l satisfies
+    //
+    //     Z'MZ y = (TZ)'l - Z'M given r,
+    //
+    // from which stiffness K = TZ (Z'MZ)^{-1} (TZ)', force F and energy follow
+    // as for a displacement element. K is formed as Y'Y, so that it is
+    // symmetric and semidefinite to the last bit.
     const Eigen::MatrixXd             Z = mapped_basis<dim>(corners);
     const Eigen::LLT<Eigen::MatrixXd> factor(Z.transpose() * M * Z);
     const Eigen::MatrixXd             b       = Z.transpose() * (M * given);

@@ -20,6 +20,9 @@ namespace Debond
     std::vector<dealii::Point<dim>>
     points_in(const CellOf<dim> &cell)
     {
+      // Loads that are constant on the cell are represented as they are;
+      // whether they are constant is judged at these points, inside of the
+      // cell, where a load that jumps at a side has one value.
       static const dealii::QGaussSimplex<dim> rule(2);
       std::vector<dealii::Point<dim>>         points;
       for (const dealii::Point<dim> &reference : rule.get_points())
@@ -64,6 +67,7 @@ namespace Debond
         const auto cell = dealii::ReferenceCells::get_simplex<dim>();
         for (const unsigned int face : cell.face_indices())
           {
+            // The sum of all vertices' numbers less those of the face.
             unsigned int missing = dim * (dim + 1) / 2;
             for (unsigned int k = 0; k < dim; ++k)
               missing -= cell.face_to_cell_vertices(face, k, 1);
@@ -116,7 +120,8 @@ namespace Debond
         {
           // Sides inside of the body need nothing but their unknowns. Those of
           // the boundary get supports, the law's directions, and loads, as work
-          // on the means w_k.
+          // on the means w_k. Unknowns are numbered by faces, so that both
+          // cells at a face find the same ones.
           const auto face = cell->face(face_opposite<dim>(corner));
           if (!face->at_boundary())
             continue;
@@ -199,6 +204,7 @@ namespace Debond
   EquilibriumMesh<dim>::vertices_of_side(const Cell        &cell,
                                          const unsigned int corner)
   {
+    // The order of corners is that of EquilibriumElement.
     std::array<unsigned int, dim> result;
     for (unsigned int k = 0; k < dim; ++k)
       result[k] = cell->vertex_index(k < corner ? k : k + 1);
@@ -329,6 +335,9 @@ namespace Debond
       {
         if (support.boundaries.count(side.id) == 0)
           continue;
+        // A roller fixes the normal displacement and leaves the others free,
+        // whose tractions are then zero. Components are Cartesian, and the side
+        // keeps its directions for them.
         if (support.is_roller)
           {
             use_normal(side);
@@ -354,6 +363,9 @@ namespace Debond
                                     const BoundaryConditions &conditions,
                                     const Supports<dim>      &supports)
   {
+    // Contact sides have the moments of s along their normal and those of v_tau
+    // beside it. If v_tau is free, its unknowns make sigma_tau zero; if it is
+    // fixed, sigma_tau may be anything. A gap is a lifting of s.
     use_normal(side);
     if (conditions.fixes_tangential(side.id))
       for (unsigned int d = 1; d < dim; ++d)
@@ -377,9 +389,9 @@ namespace Debond
         return given.traction(side.id, point, side.normal);
       },
       side.corners);
-    // The stresses are in equilibrium with the linear traction of the same
-    // moments. What is left of it is estimated apart, by Lambda of a rectangle
-    // as wide as the side and as high as the cell.
+    // What that leaves out is estimated apart, by Lambda of a rectangle as wide
+    // as the side and as high as the cell: dim |Q| / |I| is the height of a
+    // simplex.
     if (traction.rest > 0.)
       {
         loads_are_exact = false;

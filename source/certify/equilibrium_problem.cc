@@ -42,6 +42,7 @@ namespace Debond
                     const double           measure_of_cell,
                     const Material        &material)
     {
+      // The parts between the centroid and the sides are of the same size.
       double sum = 0.;
       for (unsigned int i = 0; i <= dim; ++i)
         sum += complementary_energy<dim>(stress.segment<n_of_part<dim>>(
@@ -58,6 +59,7 @@ namespace Debond
     void
     add_pressure(const double pressure, Eigen::VectorXd &stress)
     {
+      // Normal stresses come first among the components at each corner.
       for (unsigned int k = 0; k < stress.size(); k += n_stress_components<dim>)
         stress.segment<dim>(k).array() += pressure;
     }
@@ -80,6 +82,8 @@ namespace Debond
   std::vector<double>
   strain_energies(const ElasticFields<dim> &fields, const DofVector &u)
   {
+    // The rule is exact: strains are constant in a cell, or linear with
+    // quadratic displacements.
     CellStresses<dim>   stresses(fields,
                                u,
                                1.,
@@ -105,7 +109,8 @@ namespace Debond
     , b(condensed.load())
   {
     // The unknowns w_1 = m - k/3 and w_2 = m + k/3 become m and k by a
-    // congruence: columns first, then rows.
+    // congruence: columns first, then rows. With w = T x the quadratic form of
+    // x has T'AT and T'b.
     const Eigen::Index n      = b.size() / 2;
     const auto         change = [n](auto first, auto second) {
       const Eigen::MatrixXd sum = first + second;
@@ -200,6 +205,7 @@ namespace Debond
     for (const auto &cell : cells)
       {
         const std::vector<unsigned int> unknowns = mesh.unknowns_of(cell);
+        // The sides of a cell couple to each other with all their unknowns.
         for (const unsigned int row : unknowns)
           pattern.add_entries(row, unknowns.begin(), unknowns.end());
       }
@@ -238,7 +244,8 @@ namespace Debond
       }
 
     // The moments of the contact sides are kept, corner by corner. Rigid
-    // motions of a body that only contact holds are left in S.
+    // motions of a body that only contact holds are left in S. A is definite if
+    // s is zero, which is what "semidefinite" asks for.
     std::vector<unsigned int> kept;
     for (unsigned int k = 0; k < dim; ++k)
       for (const auto &side : mesh.contact_sides)
@@ -269,6 +276,10 @@ namespace Debond
   std::vector<Eigen::VectorXd>
   EquilibriumProblem<dim>::stresses(const DofVector &unknowns) const
   {
+    // An unknown is what is left of the displacement without the lifting, so
+    // that the lifting is added before cells turn the displacements of their
+    // sides into a stress. Tractions are continuous between cells only to the
+    // accuracy of the solution; rounding_of() says what that may cost.
     std::vector<Eigen::VectorXd> result;
     for (const auto &cell : mesh.triangulation.active_cell_iterators())
       {
@@ -322,6 +333,7 @@ namespace Debond
               continue;
             auto vertices = mesh.vertices_of_side(cell, corner);
             std::sort(vertices.begin(), vertices.end());
+            // Work on the means w_k: loads are the moments of linear tractions.
             const auto l = side_unknowns(
               SideDisplacement<dim>(fields.unknowns(), u, cell, vertices));
             for (unsigned int k = 0; k < dim; ++k)
@@ -347,8 +359,9 @@ namespace Debond
     std::vector<double>       result(energies.size(), 0.);
     for (const auto &rest : mesh.load_rests)
       {
-        // Lambda of a rectangle, see doc/reference/certificate.md, with the
-        // least of epsilon : E(epsilon).
+        // 2 mu / Lambda of a rectangle of width pi w and height h, see
+        // doc/reference/certificate.md, where the least of epsilon : E(epsilon)
+        // stands for 2 mu.
         const Material &material = materials(rest.cell->material_id());
         const double    w = rest.width / dealii::numbers::PI, h = rest.height;
         const double    bound =
@@ -402,6 +415,8 @@ namespace Debond
                   stress[dealii::SymmetricTensor<2, dim>::
                            unrolled_to_component_indices(k)];
             }
+        // C epsilon - (sigma + p 1) measured by C^{-1} is C^{1/2} epsilon -
+        // C^{-1/2} (sigma + p 1) squared.
         gaps.push_back(0.5 *
                        energy_of_parts<dim>(difference,
                                             cell->measure(),
@@ -420,7 +435,10 @@ namespace Debond
   {
     // One energy is computed twice at one displacement: by the eliminated
     // system, and by the stresses, summed up cell by cell. The difference
-    // measures what the factorisation has lost.
+    // measures what the factorisation has lost. The tractions' moments K l - F
+    // give the work along what is prescribed. Both energies are equal in exact
+    // arithmetic at any displacement that is at equilibrium for the kept
+    // unknowns.
     const DofVector        unknowns = condensed.expand(kept);
     const Eigen::VectorXd &lifting  = mesh.lifting;
     double                 energy   = mesh.loads_on_sides.dot(lifting);
@@ -457,6 +475,8 @@ namespace Debond
   {
     std::vector<dealii::SymmetricTensor<2, dim>> result(stresses.size());
     for (unsigned int cell = 0; cell < stresses.size(); ++cell)
+      // The parts have the same size, and the mean of a linear function is that
+      // of its values at the dim + 1 corners.
       for (unsigned int k = 0; k < stresses[cell].size(); ++k)
         result[cell].access_raw_entry(k % n_stress_components<dim>) +=
           stresses[cell](k) / ((dim + 1.) * (dim + 1.));

@@ -15,7 +15,8 @@ namespace Debond
                          const double               c_m,
                          const std::vector<double> &kinks)
     {
-      // As c + 2 b t + a t^2.
+      // As c + 2 b t + a t^2. A linear trace has a = 0 and one finite root, c /
+      // sum; the other one is infinite or not a number and is not in (0, 1).
       const double        b = c_m - c_0, a = c_1 - c_m - b;
       std::vector<double> ends = {0., 1.};
       for (const double kink : kinks)
@@ -44,7 +45,9 @@ namespace Debond
                const VectorView          &s)
   {
     // Between kinks j_1 is a quadratic of a trace that is quadratic at most, so
-    // a polynomial of degree 4, which three Gauss points integrate exactly.
+    // a polynomial of degree 4, which three Gauss points integrate exactly. The
+    // trace is that of Bernstein coefficients: the values at the ends and the
+    // coefficient of the edge, for a linear one the mean of the ends.
     const dealii::QGauss<1> rule(3);
     double                  energy = 0.;
     for (const auto &face : boundary.faces)

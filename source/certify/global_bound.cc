@@ -81,6 +81,9 @@ namespace Debond
         (side.corners[1] - side.corners[0]) / side.measure;
       const dealii::Tensor<1, 2> to_centre =
         side.cell->center() - side.corners[0];
+      // Turned so that the side is the x axis, the cell may be below it, and
+      // its apex may have been mirrored by triangle(). Each of the two mirrors
+      // the axes of the material; both together only turn them by 180 degrees.
       const bool is_below = along[0] * to_centre[1] < along[1] * to_centre[0];
       // The apex is nearer to the second corner if the centre is.
       const bool is_turned = to_centre * along > 0.5 * side.measure;
@@ -179,6 +182,9 @@ namespace Debond
                           *problem->phi,
                           interruption},
                          given_means(problem->kept));
+      // The bound is of the finite problem: its constant belongs to it, and
+      // what elimination may have lost is taken off. Without a bound of the
+      // tree there is none of J.
       known.nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?
@@ -209,12 +215,15 @@ namespace Debond
     void
     StagedBounds::begin()
     {
+      // What comes next needs the problem of the best bound, with the place
+      // where it is least.
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
       double best_lower = -std::numeric_limits<double>::infinity();
       // D is at most 2 a at first. If that proof does not end, larger ones are
       // tried, which round the law less but make the triangles softer, and the
-      // better bound is taken.
+      // better bound is taken. As long as there is none, a proof may take all
+      // the nodes that the user allows.
       for (const double multiple : first_shifts)
         {
           if (const double lower =
@@ -238,6 +247,8 @@ namespace Debond
     bool
     StagedBounds::losses_matter() const
     {
+      // An interval whose width does not come from the sides, but from the
+      // stresses elsewhere, is not made narrower by other shifts.
       const double loss =
         std::accumulate(known.losses.begin(), known.losses.end(), 0.);
       return part_of_losses * loss >= least_gain * (upper - known.lower);
@@ -257,7 +268,8 @@ namespace Debond
         {
           // In turn: what is known of the bound makes the ranges of p = m + k
           // xi narrower (Theorem 2), and on narrower ranges the law loses less,
-          // which raises the bound.
+          // which raises the bound. Each of both holds whatever comes after it,
+          // so that the best bound and the intersection of all ranges are kept.
           look(stage == 0);
           const double before = upper - known.lower;
           add_bound(problems.shifts_for_ranges(
@@ -276,12 +288,15 @@ namespace Debond
       if (!interruption.requested())
         look(false);
 
+      // J is not above the upper number somewhere, so that a bound above that
+      // could only come from rounding.
       known.lower = std::min(known.lower, upper);
       // The piece of the law on which all of the range is, if it is one.
       for (std::size_t i = 0; i < n; ++i)
         {
           const PiecewiseEnergy &law    = problems.laws_of_sides()[i];
           const Interval         linear = known.sides[i].linear();
+          // An interval with a kink inside has ends on different pieces.
           if (const unsigned int piece = law.index(linear.upper);
               law.index(linear.lower) == piece)
             known.sides[i].piece = piece;
@@ -310,7 +325,8 @@ namespace Debond
       {
         // Lambda_I depends on shape, material and scale, and sides of one shape
         // share it: each takes a few eigenvalue problems. It is taken a little
-        // lower for what rounding may have done to it.
+        // lower for what rounding may have done to it. For a side that is |I|
+        // times as long it is 1/|I| times as large.
         const TriangleAboveSide own = triangle(side);
         const Material          material =
           material_above(side, materials(side.cell->material_id()));

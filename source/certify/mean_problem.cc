@@ -22,6 +22,8 @@ namespace Debond
                  const RoundedEnergy   &rounded,
                  const double           mean)
     {
+      // The mean at which the next bound is least is not known yet, so that
+      // some places around the last one are asked.
       const PiecewiseEnergy own    = rounded.minimum();
       const double          margin = 0.1 * std::abs(law[0].lower);
       double                result = 0.;
@@ -60,7 +62,11 @@ namespace Debond
                  const double           factor)
     {
       // Branches outside of the range of m cannot be reached by the minima that
-      // are asked for, and without them fewer bonds are left to branch on.
+      // are asked for, and without them fewer bonds are left to branch on. A
+      // single piece is a quadratic, with its constant; of several the minimum
+      // is a PiecewiseEnergy again, which is 0 at 0, so that the constant of
+      // the first one is taken out and returned. All are multiplied by the
+      // length of the side.
       unsigned int first = whole.index(range.upper);
       unsigned int last  = std::max(whole.index(range.lower), first);
       while (first < last && range.upper <= whole[first].lower)
@@ -75,6 +81,7 @@ namespace Debond
                           factor * static_cast<double>(nearest.constant)},
                 PiecewiseEnergy::zero(),
                 0.};
+      // Nothing is outside of the range.
       if (first == 0 && last + 1 == whole.size())
         return in_whole();
       std::vector<EnergyPiece> pieces;
@@ -159,6 +166,8 @@ namespace Debond
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
         double       least    = std::numeric_limits<double>::infinity();
+        // D grows by factors, up to what the triangle has. It ends where the
+        // piece is certain, as more would only cost stiffness.
         for (double D = best; D < available(i); D *= 1.2)
           {
             const RoundedEnergy rounded(law, D);
@@ -228,7 +237,9 @@ namespace Debond
       for (unsigned int i = 0; i < n; ++i)
         others.push_back(n + i);
       // The existence of the inverse is the proof that the problem is convex in
-      // the others.
+      // the others. The others lower the energy by 1/2 r'A_oo^{-1} r for forces
+      // r on them, and safe_inverse() is not below the true inverse: with it
+      // what is left is a lower bound for all s.
       auto inverse = safe_inverse(A(others, others));
       if (!inverse)
         return false;
@@ -237,6 +248,9 @@ namespace Debond
       const Eigen::MatrixXd mixed    = A(others, result.kept);
       result.offset                  = result.inverse_in_others * b_others;
       result.to_others               = -result.inverse_in_others * mixed;
+      // With y = A_oo^{-1} (b_o - A_ok s), the others at their best, what
+      // remains is - 1/2 b_o'A_oo^{-1} b_o + 1/2 s'(A_kk - A_ko A_oo^{-1} A_ok)
+      // s - (b_k - A_ko A_oo^{-1} b_o)'s.
       result.constant -= 0.5 * b_others.dot(result.offset);
       const Eigen::MatrixXd S =
         A(result.kept, result.kept) + mixed.transpose() * result.to_others;
@@ -259,7 +273,8 @@ namespace Debond
     // G_theta of Theorem 1: the triangles above the sides are 1 - theta_I times
     // as stiff. Too much taken from them may leave a matrix that is indefinite
     // to rounding; then there is no problem with these D, and smaller ones are
-    // tried.
+    // tried. theta_I = D_I / Lambda_I, since D_I = theta_I Lambda_I is what
+    // Theorem 1 may take for the part of v_nu that is not linear.
     std::vector<double> weights(sharers.size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
       weights[sides[i].cell->active_cell_index()] -= D[i] / trace_constants[i];
@@ -295,10 +310,13 @@ namespace Debond
             quadratic = Quadratic{length * piece.curvature,
                                   length * piece.slope,
                                   length * static_cast<double>(piece.constant)};
+            // c/2 (m^2 + k^2/3) |I|; the part of m^2 follows below.
             A(n + i, n + i) += length * piece.curvature / 3.;
           }
         else
           {
+            // -|I| D k^2/6. If the rounded law has one piece in the range of m,
+            // that is quadratic, too.
             A(n + i, n + i) -= length * D[i] / 3.;
             const LawInRange own =
               law_in_range(rounded.minimum(), ranges[i].mean, length);
@@ -314,7 +332,9 @@ namespace Debond
             A(i, i) += quadratic->curvature;
             b(i) -= quadratic->slope;
             result.constant += quadratic->constant;
-            // m <= 0 says nothing.
+            // If the range excludes contact, m <= 0 says nothing, and m is
+            // eliminated like a slope. Otherwise it is kept, with the law zero
+            // beside its quadratic term.
             if (ranges[i].mean.upper < 0.)
               {
                 result.eliminated.push_back(i);
@@ -324,7 +344,8 @@ namespace Debond
           }
         result.kept.push_back(i);
       }
-    // There is a problem without any, too.
+    // Branch and bound needs an unknown, so that one is kept even if all could
+    // be eliminated.
     if (result.kept.empty())
       {
         result.kept.push_back(result.eliminated.back());

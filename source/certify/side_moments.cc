@@ -16,6 +16,9 @@ namespace Debond
     SideRule<dim>
     make_rule(const unsigned int n_parts)
     {
+      // Weights of the reference face add up to 1, or to 1/2 for a triangle,
+      // whose measure is taken out here. The first barycentric coordinate is
+      // what the others leave of 1.
       const dealii::Quadrature<dim - 1> rule = face_rule<dim>(n_parts);
       SideRule<dim>                     points;
       for (unsigned int q = 0; q < rule.size(); ++q)
@@ -41,6 +44,11 @@ namespace Debond
                                               &traction,
     const std::array<dealii::Point<dim>, dim> &corners)
   {
+    // The rule is that of load_vector(), so that a traction that jumps on a
+    // side has the same moments here and in f. The moments with dim lambda_k of
+    // the linear function with the values t_l at the corners are sum_l (1 +
+    // delta_kl) t_l / (dim + 1), and the inverse of that matrix is (dim + 1)
+    // delta_kl - 1.
     static const SideRule<dim> rule = make_rule<dim>(parts_of_a_face<dim>);
 
     // The values at the corners of the linear function with the same moments.
@@ -62,6 +70,7 @@ namespace Debond
     auto value = values.begin();
     for (const auto &[barycentric, weight] : rule)
       {
+        // The mean square of what the linear function leaves, by the same rule.
         dealii::Tensor<1, dim> rest = *value++;
         for (unsigned int k = 0; k < dim; ++k)
           rest -= barycentric[k] * linear[k];
@@ -84,6 +93,8 @@ namespace Debond
     : fe(unknowns.dof_handler().get_fe())
     , values(fe.dofs_per_cell)
   {
+    // The values at all nodes of the cell, whose shape functions are evaluated
+    // at places on the reference cell: the trace for degree 1 and 2 alike.
     const auto &dofs = unknowns.dof_handler();
     const typename dealii::DoFHandler<dim>::active_cell_iterator dof_cell(
       &dofs.get_triangulation(), cell->level(), cell->index(), &dofs);
@@ -118,6 +129,7 @@ namespace Debond
   const SideRule<dim> &
   side_rule()
   {
+    // One part will do, since displacements are polynomials on a side.
     static const SideRule<dim> rule = make_rule<dim>(1);
     return rule;
   }
@@ -131,6 +143,7 @@ namespace Debond
     std::array<dealii::Tensor<1, dim>, dim> result;
     for (const auto &[barycentric, weight] : side_rule<dim>())
       {
+        // Weights add up to 1, so that these are means over the side.
         const dealii::Tensor<1, dim> here = weight * u(barycentric);
         for (unsigned int k = 0; k < dim; ++k)
           result[k] += dim * barycentric[k] * here;

@@ -27,7 +27,11 @@ namespace Debond
       const unsigned int n_eliminated =
         static_cast<unsigned int>(problem.eliminated.size());
       // Means and slopes as functions of s, and what of their variance is that
-      // of what is eliminated.
+      // of what is eliminated. The others are y = offset + to_others s + e, and
+      // the functional has 1/2 e'A_oo e for e beside its form in s. So the
+      // variance of a linear functional of both is a sum of l_s'A^{-1} l_s,
+      // with l_s what it is as a function of s, and of its own entries of
+      // A_oo^{-1}.
       Eigen::MatrixXd means  = Eigen::MatrixXd::Zero(n, n_kept);
       Eigen::MatrixXd slopes = problem.to_others.bottomRows(n);
       Eigen::VectorXd of_mean(Eigen::VectorXd::Zero(n));
@@ -53,7 +57,8 @@ namespace Debond
             return {};
           // By value + 1/2 (s - x)'A (s - x) <= U each linear functional l's is
           // within (2 (U - value) l'A^{-1} l)^{1/2} of l'x; the variance below
-          // is l'A^{-1} l.
+          // is l'A^{-1} l. It is enlarged by a little for what rounding does to
+          // roots and inverses.
           const double radius =
             std::sqrt(2. * (upper - ball.value)) * (1. + Tolerance::outwards);
           const Eigen::VectorXd x         = problem.all(ball.x);
@@ -61,6 +66,9 @@ namespace Debond
           const Eigen::MatrixXd of_slopes = slopes * ball.inverse;
           for (unsigned int i = 0; i < n; ++i)
             {
+              // Variances of m, of k and their covariance give that of m + xi k
+              // for each xi; at the ends of the side, xi = -1 and 1, it bounds
+              // p there.
               const double mean_variance =
                 of_mean(i) + of_means.row(i).dot(means.row(i));
               const double slope_variance =
@@ -95,6 +103,8 @@ namespace Debond
     {
       for (unsigned int i = 0; i < problem.kept.size(); ++i)
         {
+          // Ranges of earlier problems hold for this one, too, and cut its
+          // boxes.
           const Interval &mean = ranges[problem.kept[i]].mean;
           node.lower(i)        = std::max(node.lower(i), mean.lower);
           node.upper(i)        = std::min(node.upper(i), mean.upper);
@@ -131,7 +141,8 @@ namespace Debond
     // In each box that is not excluded the functional grows quadratically about
     // its relaxed minimum, so that points with J <= U are in an ellipsoid
     // around it. More boxes give smaller ellipsoids, and their union is the
-    // range.
+    // range. J <= U means that the functional of s is at most U less the
+    // constant, where the constant may be too large by its rounding.
     const double           best = upper - problem.constant + problem.rounding;
     const NodeBound        bound({problem.S,
                                   problem.g,
@@ -175,6 +186,7 @@ namespace Debond
                 hulls[i].combine(hull, (*own)[i]);
             continue;
           }
+        // The lower half is taken next, as it is the last one that is appended.
         for (ProofNode &half : halves(node, result))
           open.push_back(std::move(half));
       }

@@ -22,6 +22,10 @@ namespace Debond
       std::vector<dealii::Point<2>>    points;
       std::vector<dealii::CellData<2>> cells;
       std::vector<unsigned int>        first;
+      // Points by rows parallel to I, n + 1 - j of them in row j. Between two
+      // rows there are triangles that stand on their side, the ones similar to
+      // Q, and others that stand on their apex, which are these turned by 180
+      // degrees.
       for (unsigned int j = 0; j <= n; ++j)
         {
           first.push_back(static_cast<unsigned int>(points.size()));
@@ -72,6 +76,10 @@ namespace Debond
           linear(i, 1)     = 0.5 * (a + b);
           linear(n + i, 1) = 0.5 * (b - a);
         }
+      // In the coordinates root x the L2 product is Euclidean. The last columns
+      // of Q are orthogonal there to the two linear traces; divided by root
+      // they are orthonormal in L2. Least eigenvalues with this basis are
+      // Rayleigh quotients by |v_nu - p|_I^2.
       const Eigen::VectorXd                       root = mass.cwiseSqrt();
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
                                                      linear);
@@ -92,6 +100,7 @@ namespace Debond
     const double modulus = material.extreme_moduli()[1];
     Material     unit    = material;
     unit.young_modulus   = 1.;
+    // Poisson's ratios and angles have no unit.
     if (material.orthotropy)
       for (unsigned int i = 0; i < 3; ++i)
         {
@@ -107,7 +116,8 @@ namespace Debond
     EquilibriumProblem<2> problem(mesh, conditions, {}, unit, Loads<2>());
     const auto           &sides = problem.mesh.contact_sides;
     // If v_tau is free, a motion along I has no energy, and one unknown is
-    // fixed to make the matrix definite.
+    // fixed to make the matrix definite. That motion has no v_nu, so that no
+    // trace is lost.
     if (!tangential_fixed)
       problem.mesh.is_fixed[sides[0].first_unknown + 1] = 1;
     const Eigen::MatrixXd basis = not_linear_traces(sides);
@@ -120,6 +130,8 @@ namespace Debond
       {
         std::vector<double> weights(mesh.n_active_cells(), 1.);
         for (const auto &side : sides)
+          // theta may be at most 0.9, so that the cells at I keep a tenth of
+          // their stiffness whatever n is.
           weights[side.cell->active_cell_index()] =
             1. - std::min(theta_n / n, 0.9);
         const MeansAndSlopes  condensed(*problem.condense(weights));
@@ -129,6 +141,8 @@ namespace Debond
                           S, Eigen::EigenvaluesOnly)
                           .eigenvalues()(0));
       }
+    // Rounding of the eigenvalue must not raise the constant, which is in the
+    // unit of the moduli again, per length 1 of the side.
     return (1. - Tolerance::certificate) * best * modulus;
   }
 } // namespace Debond
