@@ -63,10 +63,10 @@ namespace Debond
           "D; allowed are \"gauss 1\" to \"gauss " + std::to_string(largest) +
           "\"");
 
-      // Unlike QGaussSimplex, these rules do not depend on the numbering of
-      // the vertices, so that a symmetric problem stays symmetric.
-      // Their weights are positive, without which a sum of majorants would be
-      // no majorant of Phi.
+      // Unlike QGaussSimplex, these rules do not depend on the numbering of the
+      // vertices, so that a symmetric problem stays symmetric. Their weights
+      // are positive, without which a sum of majorants would be no majorant of
+      // Phi.
       return dealii::QWitherdenVincentSimplex<dim - 1>(n);
     }
 

@@ -25,9 +25,9 @@ namespace Debond
       // It is below its tangent, which what comes before it has taken care of.
       if (other.decay > 0.)
         return {0., 0.};
-      // Of other less the tangent of own at s, h + b x + c/2 x^2: about 0, as
-      // brittle bonds are next to 0, seen from far.
-      // The tangent of own at s is force x + at_zero.
+      // The tangent of own at s is force x + at_zero. Other less this tangent
+      // is h + b x + c/2 x^2: about 0, as brittle bonds are next to 0, seen
+      // from far.
       const long double force =
         own.decay > 0. ?
           static_cast<long double>(own.derivative(s)) :

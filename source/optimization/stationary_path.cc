@@ -24,8 +24,8 @@ namespace Debond
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         // The state of a minimum: contact at 0, else the piece that s_i is on,
-        // of those that its bonds have not left for good.
-        // What has no bonds is on one piece, whichever.
+        // of those that its bonds have not left for good. What has no bonds is
+        // on one piece, whichever.
         if (bonds[i].energy == 0.)
           this->bonds[i].least = f.size() - 1;
         segments.push_back(s(i) < 0. ?
@@ -211,9 +211,8 @@ namespace Debond
   {
     // Free components are on pieces, where r_i = w_i/l_i f'(s_i/l_i) is affine
     // in s_i; the others have their s_i from hold(). So the free ones solve a
-    // linear system, with the stiffness of their pieces on its diagonal.
-    // Of s at t: S s + r = load + (t - first_t) slope, r known by s_i on
-    // pieces.
+    // linear system, with the stiffness of their pieces on its diagonal. At t
+    // it is S s + r = load + (t - first_t) slope.
     Eigen::VectorXd rest = load + (parameter - first_t) * slope;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (!is_free(i) && s(i) != 0.)
@@ -286,8 +285,7 @@ namespace Debond
     double              step = std::max(0., direction * (end - parameter));
     std::vector<double> steps(s.size(), infinity);
     // How far the path goes: to the first end of a segment, or to the end of
-    // the interval.
-    // Changes that are as far as the end come after it.
+    // the interval. Changes that are as far as the end come after it.
     const double before_end  = step - tied;
     bool         reaches_end = true;
     for (unsigned int i = 0; i < s.size(); ++i)

@@ -132,9 +132,8 @@ namespace Debond
               const std::shared_ptr<const Scene<dim>> &scene);
 
     /// Makes that of the displacement @p u. @p proof: limits of branch and
-    /// bound.
-    /// @p earlier: of the same scene on another mesh, whose bounds are used if
-    /// they are of the least J and of the loads as they are. Throws
+    /// bound. @p earlier: of the same scene on another mesh, whose bounds are
+    /// used if they are of the least J and of the loads as they are. Throws
     /// EquilibriumError if no bound was found.
     Certificate
     certify(const DofVector                &u,

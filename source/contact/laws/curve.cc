@@ -53,9 +53,9 @@ namespace Debond
           if (k == 0)
             continue;
           // A traction that jumped up would be a convex kink of j_1: there is
-          // no quadratic that touches it from above, as a majorant has to.
-          // An opening twice is a drop, which is allowed; what falls is not a
-          // function.
+          // no quadratic that touches it from above, as a majorant has to. An
+          // opening twice is a drop, which is allowed; openings that fall make
+          // no function.
           require_curve(opening >= curve[k - 1].first,
                         words("has openings that do not fall, as from ",
                               curve[k - 1].first,
@@ -184,9 +184,9 @@ namespace Debond
         // -s. So j_1'(s) = rise s - at_zero, with the curvature and the slope
         // that a piece is described by.
         double rise = (last - t) / (next - p), at_zero = t - rise * p;
-        // Bonds return along a piece if its slope is exactly zero; a remainder
-        // of rounding would make them return along a secant instead.
-        // A spring through 0, whatever rounding makes of it.
+        // A spring through 0 is that to rounding. Bonds return along a piece if
+        // its slope is exactly zero; a remainder of rounding would make them
+        // return along a secant instead.
         if (std::abs(at_zero) <= Tolerance::rounding_of_data * strength)
           {
             rise    = last / next;

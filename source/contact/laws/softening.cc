@@ -118,8 +118,8 @@ namespace Debond
   {
     check(bonds);
     // The energy is the area of the triangle below the three points, strength
-    // times the last opening divided by two.
-    // What is brittle but for rounding breaks at once.
+    // times the last opening divided by two. What is brittle but for rounding
+    // breaks at once.
     const double         first = bonds.strength / bonds.stiffness;
     const double         last  = 2. * bonds.energy / bonds.strength;
     ContactLawParameters law   = curve_law(

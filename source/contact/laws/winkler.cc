@@ -188,9 +188,9 @@ namespace Debond
             return;
           }
       bonds = given;
-      // The effective scene has one pair only.
-      // It says a and M, which stand for any of the pairs, and the others are
-      // emptied, so that reading it again gives the same bonds.
+      // The effective scene has one pair only, a and M, which stand for any of
+      // the pairs. The others are emptied, so that reading it again gives the
+      // same bonds.
       table.derive(all[0], bonds[0], source);
       table.derive(all[1], bonds[1], source);
       for (const std::string &path : {all[2], all[3]})

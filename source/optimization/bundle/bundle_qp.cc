@@ -86,11 +86,12 @@ namespace Debond
     // set; once the target is reached, the constraint that promises most
     // enters. At a target that no constraint violates the point is primal
     // feasible as well, and so the minimum.
-    // The dual objective rises from one working set to the next, but for ties:
-    // as long as it does there is reason to go on.
-    // A solve from a good working set needs a few changes, one from scratch
-    // about one for each constraint. Ties can let the method go round in
-    // circles.
+    //
+    // The dual objective rises from one working set to the next, but for ties,
+    // which can let the method go round in circles: as long as it rises there
+    // is reason to continue. A solve from a good working set needs a few
+    // changes, one from scratch about one for each constraint, so that there is
+    // patience for twice as many without a rise.
     const unsigned int patience =
       20 + 2 * (m + static_cast<unsigned int>(mu.size()));
     const unsigned int limit = solution.steps + 10 * patience;
@@ -120,9 +121,8 @@ namespace Debond
     if (solution.status != Status::optimal)
       {
         // A solve that failed may leave a working set that its factor does not
-        // have.
-        // Whatever was left half done: bounds that have not reached the factor
-        // leave the working set, and the factor is made anew next time.
+        // have: bounds that have not reached the factor leave the set, and the
+        // factor is made anew next time.
         for (unsigned int i = 0; i < mu.size(); ++i)
           if (bound_active[i] != 0 && free_bounds(i) != 0.)
             {
@@ -149,8 +149,8 @@ namespace Debond
     run_active_set();
 
     // The residual is computed from the data, not from the factor, so that it
-    // tells what the factor has lost.
-    // Errors that the factor has gathered over many updates go with it.
+    // tells what the factor has lost. Errors that the factor has gathered over
+    // many updates go with it when it is made anew, once.
     const auto is_solved = [this]() {
       return solution.residual() < QPTolerance::repair;
     };

@@ -23,6 +23,8 @@ namespace Debond
   Eigen::VectorXd
   BundleQP::h_times(const Eigen::VectorXd &x) const
   {
+    // H x in O(m^2 + m n_C): the combination of the cuts on the free bounds
+    // first, then its products with each cut.
     const unsigned int n       = static_cast<unsigned int>(cuts.size());
     Eigen::VectorXd    in_free = Eigen::VectorXd::Zero(mu.size());
     for (unsigned int k = 0; k < n; ++k)
@@ -56,9 +58,9 @@ namespace Debond
     // H alone is singular as soon as there are more cuts than dimensions, or
     // cuts that are combinations of each other up to a constant. H + kappa 1 1'
     // is positive definite where H is on directions with sum lambda = 0, which
-    // is all that the method needs.
-    // kappa must be neither so large that the differences of the cuts drown
-    // in kappa 1 1', nor so small that 1 1' is lost.
+    // is all that the method needs. kappa must be neither so large that the
+    // differences of the cuts drown in kappa 1 1', nor so small that 1 1' is
+    // lost.
     double       log_sum = 0.;
     unsigned int n_terms = 0;
     for (const unsigned int j : cuts)
@@ -88,8 +90,9 @@ namespace Debond
           }
         else
           {
-            // Cannot stay in the working set. Its weight must go somewhere;
-            // the next steps put it right.
+            // A cut that depends on the others cannot stay in the working set.
+            // Its weight is given to another one, and the next steps put that
+            // right.
             const double weight = lambda(k);
             cuts.erase(cuts.begin() + k);
             lambda.segment(k, lambda.size() - k - 1) =
@@ -142,11 +145,11 @@ namespace Debond
     Eigen::VectorXd right_side(n);
     for (unsigned int k = 0; k < n; ++k)
       right_side(k) = bounded.col(cuts[k]).dot(b_active) - beta(cuts[k]);
-    // What all entries share goes into v; left in, it would be lost against
-    // sum lambda = 1 where it is large beside H. It is their mean; but what a
-    // long cut has more than a short one is no part of it, so that with cuts of
-    // very different lengths each entry counts by what one unit of lambda
-    // changes in it.
+    // What all entries share goes into v; left in, it would be lost against sum
+    // lambda = 1 where it is large beside H. It is their mean; but what a long
+    // cut has more than a short one is no part of it, so that with cuts of very
+    // different lengths each entry counts by what one unit of lambda changes in
+    // it.
     constexpr double very_different = 1e8; // of squared lengths
     Eigen::VectorXd  diagonal(n);
     for (unsigned int k = 0; k < n; ++k)
@@ -161,9 +164,9 @@ namespace Debond
     };
     right_side = without_shared(right_side);
 
-    // With K = H + kappa 1 1', H lambda + v 1 = r becomes
-    // K lambda = r + (kappa sum lambda - v) 1.
-    // So lambda = K^{-1} r + c K^{-1} 1, with the c for which the sum is 1.
+    // With K = H + kappa 1 1' the system H lambda + v 1 = r becomes K lambda =
+    // r + (kappa sum lambda - v) 1, so that lambda = K^{-1} r + c K^{-1} 1,
+    // with the c for which the sum is 1.
     Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
     factor.solve_in_place(ones);
     const double ones_K_ones = ones.sum();
@@ -273,6 +276,7 @@ namespace Debond
   {
     const unsigned int behind =
       static_cast<unsigned int>(cuts.size()) - position - 1;
+    // A cut that is about to enter is the last one and not in the factor yet.
     lambda.segment(position, behind) = lambda.tail(behind).eval();
     lambda.conservativeResize(cuts.size() - 1);
     cuts.erase(cuts.begin() + position);
@@ -362,7 +366,11 @@ namespace Debond
             return true;
           }
 
-        // The components of d outside B do not change along this direction.
+        // K = H + kappa 1 1' without the term of i has the null vector z =
+        // K^{-1} row. As both parts are semidefinite, the sum of z is zero and
+        // H without i has it as well: on (-z/u, mu_i = 1) sum lambda stays 1,
+        // and no component of d outside B changes, while mu of the bounds in B
+        // keeps d at them. The dual objective is linear along it.
         DualPoint direction{-row, Eigen::VectorXd::Zero(mu.size())};
         factor.solve_in_place(direction.lambda);
         direction.lambda /= u;

@@ -53,6 +53,8 @@ namespace Debond
   void
   Functional::add_phi(const Eigen::VectorXd &s, DofVector &eta) const
   {
+    // At a kink of j_1 it is the derivative of the piece on the side of 0, one
+    // element of Clarke's subdifferential.
     const Eigen::VectorXd xi = phi.subgradient(s);
     for (unsigned int i = 0; i < contact_dofs.size(); ++i)
       eta(contact_dofs[i]) += xi(i);

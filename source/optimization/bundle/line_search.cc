@@ -110,6 +110,11 @@ namespace Debond
               const ProximalBundleParameters &parameters,
               DofVector                      &eta)
   {
+    // Two parameters on the line x_k + t d_k: t_L, up to which J falls enough
+    // (14), and t_R, at which a subgradient is taken that the model does not
+    // know yet (15). If t_L >= t_bar they are the same. Values of J are
+    // differences from J(x_k), since all conditions compare with v_k, which
+    // becomes far smaller than J.
     LineSearchResult result;
     find_descent(line, v, parameters, result);
 
@@ -148,6 +153,8 @@ namespace Debond
       {
         const double middle = 0.5 * (lower + upper);
         evaluate(middle, line.change(middle));
+        // (15): the cut of this subgradient exceeds the predicted descent at
+        // d_k by (1 - m_R) |v_k|, so that the next direction is another one.
         if (-result.beta + result.slope >= parameters.m_R * v)
           {
             result.success = true;

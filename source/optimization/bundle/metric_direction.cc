@@ -75,8 +75,13 @@ namespace Debond
         BundleQP              qp(m, 0);
         for (unsigned int j = 0; j < m; ++j)
           qp.add_cut(H.col(j).head(j + 1), Eigen::VectorXd());
-        // A cut's value at d, eta_j'd - beta_j, is here that of the free part
-        // by the QP, and the rest is a constant of this active set.
+        // With x_b = M_ff^{-1} M_fb b_b and X = M_ff^{-1} G_f the cuts' values
+        // at d are
+        //
+        //     G'd - beta = -H lambda - G_f'x_b + G_b'b_b - beta:
+        //
+        // those of a QP without bounds and with u = 1, in which all but the
+        // first term is a constant of this active set.
         const Eigen::VectorXd shifted_beta =
           beta + G_free.transpose() * x_b - G.transpose() * d;
         inner = qp.solve(shifted_beta, Eigen::VectorXd(), 1.);

@@ -207,6 +207,10 @@ namespace Debond
       const Solution &
       solve(const DofVector &x, const double gamma)
       {
+        // beta_j, the subgradient locality measure, stands for alpha_j, which
+        // may be negative if J is not convex; gamma s_j^2 takes weight from
+        // subgradients that are far away. As beta_j >= 0, no cut is above
+        // J(x_k) at d = 0.
         const unsigned int m = size();
         return problem.solve(x,
                              alpha.head(m).cwiseAbs().cwiseMax(
@@ -353,6 +357,17 @@ namespace Debond
       throw std::invalid_argument(
         "The start of the bundle method must satisfy the bounds.");
 
+    // Section 4 of the paper. At the start of iteration k, x_k is in K,
+    // result.functional is J(x_k), and each eta_j of the bundle has its alpha_j
+    // and s_j as seen from x_k. Phase (1), direction finding, solves Problem QP
+    // for (d_k, v_k); the stop criterion is v_k >= -epsilon_s. Phase (2), line
+    // search, takes t_L with (14) and, after short and null steps, t_R with
+    // (15). Then
+    //
+    //     x_{k+1} = x_k + t_L d_k,    y_{k+1} = x_k + t_R d_k,
+    //
+    // and eta_{k+1} from dJ(y_{k+1}) joins the bundle. J(x_k) never rises,
+    // since (14) asks for a descent and a null step keeps x_k.
     ProximalBundleResult result;
     DofVector            eta(x), d(x);
     Bundle               bundle(direction_problem, parameters.bundle_size);
@@ -369,6 +384,8 @@ namespace Debond
         bundle.add(eta, 0., 0.);
     };
     // Old subgradients may be to blame for a failure: once more without them.
+    // With the subgradient at x_k alone the direction is that of steepest
+    // descent in the metric, subject to the bounds.
     const auto is_restarted = [&]() {
       const bool has_old = bundle.size() > 1;
       if (has_old)
@@ -398,11 +415,14 @@ namespace Debond
         if (!std::isfinite(direction.v) || !direction.slopes.allFinite())
           return finish(SolverStatus::not_finite);
 
-        // Stop criterion: v_k >= -epsilon_s, for the exact v_k too. As d = 0 is
-        // feasible, a positive v_k is a failure of the QP.
+        // Stop criterion: v_k >= -epsilon_s, for the exact v_k too, which is
+        // not below v less the duality gap. As d = 0 is feasible, a positive
+        // v_k is a failure of the QP.
         if (direction.v - direction.duality_gap >= -parameters.epsilon_s &&
             direction.v <= parameters.epsilon_s)
           return finish(SolverStatus::success);
+        // (14) and (15) are measured by v_k, so that a direction is used only
+        // if its residual, computed from the original data, is small.
         if (direction.v > parameters.epsilon_s ||
             !(direction.residual <= Tolerance::direction))
           {
@@ -452,7 +472,7 @@ namespace Debond
               result.functional += step.change;
               bundle.move(direction, step, d_length);
             }
-          // The first term of s_j^k is the way from y_{k+1} back to x_{k+1}.
+          // The first term of s_{k+1} is the way from y_{k+1} back to x_{k+1}.
           if (bundle.full())
             restart();
           else if (is_usable(eta))

@@ -375,10 +375,9 @@ namespace Debond
         if (problem.interruption.requested() ||
             is_proved(s, is_separable && is_small ? nodes_of_second_look : 1))
           return result;
-        // What the proof finds is where moves have not been tried from.
         // Search and proof help each other: a proof that finds a lower point
-        // gives the search a new start, and a lower minimum makes the proof's
-        // boxes smaller.
+        // gives the search a start from which moves have not been tried, and a
+        // lower minimum makes the proof's boxes smaller.
         for (unsigned int k = 0;
              k <= most_proofs && !problem.interruption.requested();
              ++k)

@@ -77,16 +77,16 @@ namespace Debond
             return {static_cast<double>(left.upper),
                     static_cast<double>(left.upper)};
         }
-      // How much lower the line with slope m that touches left is at right.
-      // The line with slope m that touches both has the excess 0. For each arc
-      // the touching point moves with m, until it is at an end of the arc.
+      // At q, where a line with slope m touches the right arc, the one that
+      // touches the left arc is above it by this excess, which is zero for the
+      // line that touches both. For each arc the touching point moves with m,
+      // until it is at an end of the arc.
       const auto excess = [&](const long double m) {
         const long double p = left.contact(m), q = right.contact(m);
         return m * (q - p) - (right.f(q) - left.f(p));
       };
-      // It grows with m, by a parabola between these slopes.
-      // Between the slopes at which a touching point comes to an end of its arc
-      // or leaves it.
+      // The excess grows with m, by a parabola between the slopes at which a
+      // touching point comes to an end of its arc or leaves it.
       std::array<long double, 4> slopes = {{left.slope_at(left.lower),
                                             left.slope_at(left.upper),
                                             right.slope_at(right.lower),

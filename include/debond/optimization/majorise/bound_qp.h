@@ -28,9 +28,9 @@ namespace Debond
   class ActiveSetRule
   {
   public:
-    /// @p excess is x - b outside the active set, @p mu the multipliers in
-    /// it; a sign counts only beyond @p excess_noise and @p mu_noise.
-    /// Returns the number of wrong indices.
+    /// @p excess is x - b outside the active set, @p mu the multipliers in it;
+    /// a sign counts only beyond @p excess_noise and @p mu_noise. Returns the
+    /// number of wrong indices.
     unsigned int
     update(const Eigen::VectorXd &excess,
            const Eigen::VectorXd &mu,
