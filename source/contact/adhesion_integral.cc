@@ -54,14 +54,17 @@ namespace Debond
         law.pieces().piece_at(stretch, reached);
       if (!point.shears())
         return piece.way_to_end(stretch, way.normal / point.bonds.stretch);
-      // The square of the opening, A x^2 + 2 B x + C.
+      // After the part x of the way the square of the opening is A x^2 + 2 B x
+      // + C. The end of a piece, at an opening L, is where this is L^2.
       const double shear = point.bonds.shear;
       const double A     = way.product(way, shear);
       const double B     = way.product(jump, shear);
       const double C     = jump.product(jump, shear);
       double       first = infinity;
-      // The end beyond is come to sooner or later, the one towards rest if the
-      // least opening on the line is below it.
+      // The lower end, farther from rest, is come to sooner or later; the upper
+      // one only if jumps shrink at first (B < 0) and the least opening on the
+      // line is below it. Of both forms of a root the one without a difference
+      // of nearly equal numbers is taken.
       const auto square_at = [&](const double end) {
         return end * end * point.bonds.stretch * point.bonds.stretch;
       };
@@ -91,6 +94,8 @@ namespace Debond
     const std::size_t n      = contact_points.list().size();
     if (memory.taken.empty())
       {
+        // Bonds that have never been stretched: all of their energy, in
+        // opening.
         memory.reached.assign(n, 0.);
         memory.toughness.assign(n, 1.);
         memory.mixity.assign(n, 0.);
@@ -144,6 +149,7 @@ namespace Debond
     const auto *last_point = last.points().list().data();
     double      lag = 0., without_mode = 0., all = 0.;
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      // Both lists have the same points in the same order.
       const std::size_t q     = last_point - last.points().list().data();
       const Jump<dim>   start = last_point++->jump(last_s);
       // What has a mode keeps it in this step. What has none has that of the
@@ -162,7 +168,9 @@ namespace Debond
       if (point.bonds.energy == 0. || std::isnan(mixity))
         return;
       // What they take with the energy that they have, and with another one: it
-      // is reached at another opening.
+      // is reached at another opening. With `factor` times the energy at the
+      // same stiffness the law is stretched by its square root, so that the
+      // same jump is at another stretch of it.
       const double before = memory.toughness[q];
       const double after  = (*toughness)(mixity, point.bonds.energy / before);
       const auto   taken_with = [&](const double factor) {
@@ -172,6 +180,8 @@ namespace Debond
                (law.value(0., now) - law.value(0., reached));
       };
       const double taken = taken_with(before), other = taken_with(after);
+      // What bonds take on the way, and by how much that depends on the mode
+      // that they are given.
       all += std::max(taken, other);
       lag += std::abs(other - taken);
       if (has_mode || std::max(taken, other) == 0.)
@@ -196,6 +206,8 @@ namespace Debond
     BondMemory memory = broken;
     for (std::size_t q = 0; q < memory.mixity.size(); ++q)
       {
+        // Toughness multiplies the energy of opening, which is what the points
+        // have without the toughness of an earlier mode.
         const double energy =
           contact_points.list()[q].bonds.energy / memory.toughness[q];
         if (energy > 0.)
@@ -334,6 +346,9 @@ namespace Debond
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
       if (point.shears())
         {
+          // In the product of jumps dj_1(-l)/dl = tau, so that the derivative
+          // along an unknown is tau/l times the product of the jump with what
+          // the unknown makes of it.
           const double stiffness =
             point.force() / point.bonds.stretch * law.secant(stretch, reached);
           const Jump<dim> jump = point.jump(s);
@@ -360,6 +375,12 @@ namespace Debond
     const double                         across,
     std::vector<Eigen::Triplet<double>> &entries)
   {
+    // In the product of jumps the second derivative of a function of l is
+    //
+    //     across <a, b> + (along - across) <a, jump> <b, jump> / l^2
+    //
+    // for directions a and b. At the jump zero both are the same, and there is
+    // no second term.
     const double shear  = point.bonds.shear;
     const double square = jump.product(jump, shear);
     const double more   = square > 0. ? (along - across) / square : 0.;
@@ -454,6 +475,8 @@ namespace Debond
                                          const VectorView       &s,
                                          const VectorView       &next_s) const
   {
+    // The way includes that of prescribed displacements, from the offsets of
+    // these points to those of the next step.
     double      first      = 1.;
     const auto *next_point = next.points().list().data();
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
@@ -486,7 +509,12 @@ namespace Debond
                 std::vector<Interval>     &forces)
     {
       // The force along an unknown is that of the law times the cosine of the
-      // angle to the jump, and both change with the jump.
+      // angle to the jump, and both change with the jump. By delta[i] along
+      // unknown i the opening changes by at most the radius, and the cosine of
+      // the angle by at most delta L / l, L the length of the unknown in the
+      // product of jumps; from a radius of l on the jump may have any
+      // direction. The stretch is negative, as tractions are, so that the
+      // product of a traction with this cosine is the force.
       const double shear = point.bonds.shear;
       point.for_each_unknown([&](const unsigned int i, const auto &by) {
         const double   size   = std::sqrt(by.product(by, shear));

@@ -35,6 +35,9 @@ namespace Debond
         s, [&](const auto &point, double stretch, double reached) {
           if (point.shears())
             {
+              // With bonds that shear the force is tau/l times the jump, along
+              // the normal and, times the ratio of the stiffnesses, along the
+              // boundary.
               const AdhesiveLaw &law = phi.adhesive_law();
               const double stiffness = point.force() / point.bonds.stretch *
                                        law.secant(stretch, reached);
@@ -95,6 +98,8 @@ namespace Debond
       for (unsigned int k = 0; k < phi.contact_boundary().n_face_nodes(); ++k)
         if (!face.is_held(k))
           {
+            // A node between faces has a place on each of them, with their
+            // bonds there.
             const Jump<dim> here =
               traction(phi, face, coefficient_place<dim>(k), s);
             Jump<dim> &largest = result[face.node(k)];
@@ -110,7 +115,9 @@ namespace Debond
   std::vector<double>
   shear_damage(const AdhesionIntegral<dim> &phi, const VectorView &s)
   {
-    // The mean over the points, each with its share of the unknown.
+    // The mean over the points, each with its share of the unknown. Points of
+    // bonds in shear that break by themselves have no entries for normal
+    // displacements, which tells them from all others.
     std::vector<double> lost(phi.n_unknowns(), 0.), all(phi.n_unknowns(), 0.);
     phi.for_each_point(s,
                        [&](const auto &point, double stretch, double reached) {

@@ -59,6 +59,8 @@ namespace Debond
     BondScale    result  = {scale * stretch * stretch, stretch};
     if (shear.boundaries.count(id) > 0)
       {
+        // BondScale::shear is relative to the stiffness along the normal here,
+        // a_here.
         const double of_shear = shear.is_relative ? scale : 1.;
         result.shear =
           shear.stiffness ? *shear.stiffness * of_shear / scale : 1.;

@@ -26,7 +26,9 @@ namespace Debond
                     std::vector<unsigned int> &number)
     {
       // In the order of the nodes, which is that of their positions: of an
-      // interval every second node is kept.
+      // interval every second node is kept. A node is kept if no earlier
+      // neighbour is, so that each other node has one that is: the set is
+      // maximal.
       unsigned int n_kept = 0;
       number.assign(graph.positions.size(), none);
       for (unsigned int i = 0; i < number.size(); ++i)

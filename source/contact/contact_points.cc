@@ -106,7 +106,8 @@ namespace Debond
     // each of them. Nodal quadrature needs one law there. The mean stiffness a
     // = energy / stretch^2 and the mean energy keep what the bonds are as
     // springs and what it takes to break them; the threshold follows from these
-    // two.
+    // two. The means are weighted by the integral of the vertex's function on
+    // each face, as the energy of the vertex in Phi is.
     std::vector<Sum> nodes(contact.nodes.size());
     std::vector<Sum> held(contact.held_vertices.size());
     // The field is asked with the boundary of each face, as at such a vertex it
@@ -177,6 +178,9 @@ namespace Debond
           if (is_nodal() && point.n_nodes == 1)
             {
               ContactPoint<dim> &at_node = points[point.index[0]];
+              // The point of the node is replaced by this one, with the sum of
+              // the weights of all faces so far. Displacements along the
+              // boundary are those of the last face that has bonds in shear.
               point.weight += at_node.weight;
               point.bonds =
                 field == nullptr ? BondScale() : bonds_of_nodes[point.index[0]];
@@ -213,7 +217,9 @@ namespace Debond
   {
     // Coefficients have the tangents of their own vertex, whose normal may be
     // the mean of several faces' normals. The rotation that takes that normal n
-    // to the face's normal N takes a tangent t into the plane of the face.
+    // to the face's normal N takes a tangent t into the plane of the face. That
+    // of n to N, which turns in the plane of both, is t - (t.N) / (1 + n.N) (n
+    // + N), with t.n = 0.
     if (point.bonds.shear == 0.)
       return;
     for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
@@ -251,6 +257,9 @@ namespace Debond
   void
   ContactPoints<dim>::separate_shear()
   {
+    // Points that are appended here are behind all of the rule's, so that
+    // `places` still leads to the latter. A point of bonds in shear has no
+    // normal displacement, and its opening is |t|.
     for (std::size_t q = 0, n = points.size(); q < n; ++q)
       if (const BondScale bonds = points[q].bonds;
           bonds.shear_energy > 0. && points[q].shears())
@@ -273,6 +282,8 @@ namespace Debond
   ContactPoint<dim>
   ContactPoints<dim>::point_at(const Face &face, const Barycentric &place) const
   {
+    // A point that need not be one of the rule, for results at other places.
+    // Held coefficients are in its offset.
     const Trace       shape = bernstein(place, contact.degree);
     ContactPoint<dim> point;
     point.bonds = bonds_at(face, place);
@@ -350,6 +361,10 @@ namespace Debond
   ContactPoints<dim>::coefficients(const Face                &face,
                                    const std::vector<double> &values) const
   {
+    // A rule with as many points as coefficients, or more, determines a
+    // polynomial; of fewer points, as of one in the middle of a face, each
+    // coefficient takes the largest value, which for memories is the least
+    // damage.
     const auto        &rule = quadrature.points();
     const unsigned int n    = contact.n_face_nodes();
     Eigen::MatrixXd    shapes(rule.size(), n);

@@ -208,6 +208,8 @@ namespace Debond
     double           beyond = end + 40. / last.decay;
     for (unsigned int step = 0; step < 60; ++step)
       {
+        // At `end` bonds are damaged by less, at `beyond` by more: 60 halvings
+        // leave nothing but rounding.
         const double middle                       = 0.5 * (end + beyond);
         (damage(-middle) < broken ? end : beyond) = middle;
       }

@@ -112,6 +112,10 @@ namespace Debond
               gauss_rule<dim>(parameters.gauss_points));
             break;
         }
+      // The centroid of the function lambda_k on a simplex with dim corners:
+      // with the density lambda_k the mean of lambda_l is (1 + delta_kl) / (1 +
+      // dim). A linear density of the measure, such as that of a body of
+      // revolution, has there its mean with the weight lambda_k.
       for (QuadraturePoint &point : points)
         for (unsigned int k = 0; k < dim; ++k)
           point.centroid[k] = parameters.rule == Rule::nodal ?

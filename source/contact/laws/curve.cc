@@ -162,6 +162,9 @@ namespace Debond
   curve_law(const TractionCurve &curve)
   {
     check(curve);
+    // Each part of the polygon between two openings is a piece of j_1, a
+    // parabola; s = -p turns their order, so that the pieces follow each other
+    // from 0 downwards and each ends at minus the opening of its second point.
     const auto           end      = end_of_tractions(curve);
     ContactLawParameters law      = {"curve", {}, ""};
     double               strength = 0., energy = 0.;
@@ -256,6 +259,8 @@ namespace Debond
           Pattern("nothing, or a file"),
           "A file with two columns, such as a CSV file, in place of Curve, relative to the folder of what sets it",
           "as Curve");
+        // All laws with a Traction factor share this entry, which is read by
+        // its name where a law is made.
         table.declare(
           traction_factor,
           "",

@@ -57,6 +57,9 @@ namespace Debond
     LawMaker
     maker(ParameterTable &)
     {
+      // Each number is checked by itself first, then all of them together, so
+      // that an error names the entry at fault. That bonds would take less than
+      // they have stored is an error of the fracture energy.
       return [](ParameterTable &table) {
         const std::string for_winkler =
           "is for Law = winkler: bonds that soften are the same everywhere but "

@@ -165,6 +165,8 @@ namespace Debond
                        {all[0], all[1], all[2], all[3], "Contact law/Law"});
           return;
         }
+      // Two texts are given, and at most one of them is a or M, so that there
+      // is one formula for them.
       for (const auto &[p, q, a, M] : formulas)
         if (!given[p].empty() && !given[q].empty())
           {
@@ -205,6 +207,7 @@ namespace Debond
     std::map<std::string, ContactLawParameters::Bonds>
     bonds_of_boundaries(const BondEntries &entries, ParameterTable &table)
     {
+      // The four maps by entry become one map by boundary.
       std::map<std::string, Texts> texts;
       for (unsigned int k = 0; k < 4; ++k)
         for (const auto &[name, text] : entries.of_boundaries[k])
@@ -305,6 +308,8 @@ namespace Debond
             const Pattern pattern              = quantity_or_expression(k != 1);
             table.bind(
               paths[k], entries->everywhere[k], pattern, documentation, units);
+            // An entry with the name of a boundary behind it is for that
+            // boundary alone.
             table.bind_family(
               paths[k],
               entries->of_boundaries[k],
@@ -315,6 +320,8 @@ namespace Debond
               units);
           }
         return [entries](ParameterTable &all) {
+          // Those for all boundaries come first, as boundaries take from them
+          // what they do not say themselves.
           complete("", entries->everywhere, all);
           const auto boundaries = bonds_of_boundaries(*entries, all);
           return law_of(entries->everywhere, boundaries);
