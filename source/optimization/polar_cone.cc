@@ -12,6 +12,11 @@ namespace Debond
   std::optional<Eigen::VectorXd>
   project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f)
   {
+    // With lambda >= 0 of least |f - B lambda|, p = f - B lambda is orthogonal
+    // to the columns with lambda > 0 and has b'p <= 0 for all: Moreau's
+    // decomposition of f. As with active sets for bounds, one column joins at a
+    // time, and those whose lambda would become negative leave on the way to
+    // the least squares of the others.
     Eigen::MatrixXd directions = B;
     // Only the directions of the columns matter for the cone; with unit lengths
     // one rounding fits all.

@@ -86,6 +86,14 @@ namespace Debond
                                slope = (1. + d) * end +
                                        std::sqrt(std::max(
                                          0., (1. + d) * (end * end - m * m)));
+                  // Divided by k, the line touches (1 + d)/2 l^2 and meets the
+                  // other parabola at `end`, so that its slope t solves
+                  //
+                  //     t^2 - 2 (1 + d) end t + (1 + d) (m^2 + d end^2) = 0.
+                  //
+                  // The parabola about 0 that touches the line at l has the
+                  // curvature t/l, and those on both sides d and 1 + d. All of
+                  // l, m, end and t are negative.
                   M(j, j) += k(j) * std::clamp(slope / l(i), d, 1. + d);
                 }
             node.x = solve_bound_qp(M, g, upper, active).x;
@@ -105,6 +113,8 @@ namespace Debond
                            A.cwiseAbs().cast<long double>() * x.cwiseAbs();
         const long double tiny =
           (n + 16.) * std::numeric_limits<long double>::epsilon();
+        // r_j is a double in what follows; its error bounds what that and the
+        // sum have lost.
         const Eigen::VectorXd r = (Ax - g.cast<long double>()).cast<double>(),
                               error = Tolerance::epsilon *
                                         (r.cwiseAbs() + g.cwiseAbs()) +
@@ -121,6 +131,8 @@ namespace Debond
         for (unsigned int j = 0; j < n; ++j)
           {
             const unsigned int i = phi.bonds[j];
+            // What the term of the bond is at x itself: by how much it is above
+            // its least value says where a choice would raise the bound.
             bounds(i, 2) += node.x(j) * (r(j) + 0.5 * D(j) * node.x(j));
             for (const int broken : {0, 1})
               {
@@ -142,6 +154,9 @@ namespace Debond
                               tiny * x.cwiseAbs().dot(terms)) +
           least.sum() -
           (4. * n + 16.) * Tolerance::epsilon * (size + least.cwiseAbs().sum());
+        // With a choice for one bond the bound is the sum with that bond's
+        // value in place of its least one. The lesser of the first two in a row
+        // is then the bound without a choice, so that any row gives it.
         bounds.colwise() += (sum - least.array()).matrix();
         bounds -= 4. * Tolerance::epsilon * bounds.cwiseAbs();
         return bounds.row(0).head(2).minCoeff();
@@ -165,6 +180,8 @@ namespace Debond
     const Eigen::VectorXd s = *inverse * g;
     const LongVector x = s.cast<long double>(), load = g.cast<long double>(),
                      Sx = S.cast<long double>() * x;
+    // |S x - g| with the most that rounding may have made of it: the sums are
+    // of n terms in extended precision.
     const Eigen::VectorXd rest =
       ((Sx - load).cwiseAbs() +
        (n + 16.L) * std::numeric_limits<long double>::epsilon() *
@@ -182,6 +199,8 @@ namespace Debond
       ProofNode{-infinity, 0, s - radius, upper.cwiseMin(s + radius), s, {}};
     if (!node->lower.allFinite())
       return {};
+    // Behind the box are the states of the bonds, from 0, where a bond holds,
+    // to 1, where it is broken; at the root they may be either.
     const Eigen::Index size = n + static_cast<Eigen::Index>(phi.f.size());
     node->lower             = node->lower.cwiseMin(upper);
     node->lower.conservativeResizeLike(Eigen::VectorXd::Zero(size));
@@ -257,6 +276,9 @@ namespace Debond
           (2. * (best_value - value) * inverse->diagonal()).cwiseSqrt();
         node.lower.head(n) = node.lower.head(n).cwiseMax(node.x - radius);
         node.upper.head(n) = node.upper.head(n).cwiseMin(node.x + radius);
+        // The point of the box that is nearest to 0, in each unknown: if even
+        // there a bond is stretched beyond its threshold, it is broken in the
+        // whole box.
         const Eigen::VectorXd nearest = phi.stretches(
           node.lower.head(n).cwiseMax(-node.upper.head(n)).cwiseMax(0.));
         const Eigen::MatrixXd &bounds  = relaxation.bounds;

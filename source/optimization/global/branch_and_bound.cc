@@ -89,6 +89,10 @@ namespace Debond
             result.status  = ProofStatus::node_limit;
             least_left_out = at_start;
           }
+        // Each point of the search space is in the box of an open node, or in
+        // one that has been left out, whose bound least_left_out has. So the
+        // least of these bounds is one for the minimum at any time, and the
+        // loop may end after any batch.
         unsigned int next_record = 1;
         while (!open.empty() && result.status == ProofStatus::proved)
           {
@@ -226,6 +230,8 @@ namespace Debond
           for (unsigned int k = next++; k < batch.size(); k = next++)
             {
               Job &job = batch[k];
+              // Bounds are made against the best value of the batch's
+              // beginning, which no thread changes.
               job.result =
                 node_bound.bound(job.node, result.upper, parameters.tolerance);
               if (job.node.bound < result.upper - parameters.tolerance)

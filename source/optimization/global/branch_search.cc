@@ -142,6 +142,9 @@ namespace Debond
               continue;
             for (unsigned int n = 2; may_go_on(); n *= 2)
               {
+                // From where the move has led, n layers further at once: a
+                // front that travels far takes as many trials as the logarithm
+                // of its way.
                 move = beyond(move,
                               problem.lumped.state(point),
                               problem.neighbours,
@@ -282,6 +285,8 @@ namespace Debond
               }
             return !problem.interruption.requested();
           });
+        // The trial was ended by the monitor because another one had been in
+        // this state; its end is that of the other one.
         if (end < ends.size())
           {
             minimum.status     = SolverStatus::success;
@@ -415,6 +420,8 @@ namespace Debond
         if (!problem.lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters parameters;
+        // The limit of nodes depends on n alone, and there is none of time
+        // here.
         parameters.tolerance     = limits.tolerance;
         parameters.n_threads     = limits.n_threads;
         parameters.maximum_nodes = maximum_nodes;
@@ -462,6 +469,8 @@ namespace Debond
     std::vector<PiecewiseEnergy> f;
     for (unsigned int i = 0; i < weights.size(); ++i)
       {
+        // weights[i] is the factor of the second derivative, which is that of
+        // the energy over the square of the stretch.
         const double stretch = stretches.empty() ? 1. : stretches[i];
         f.push_back(pieces.scaled(weights(i) * stretch * stretch, stretch));
       }

@@ -322,7 +322,8 @@ namespace Debond
   RoundedEnergy::minimum() const
   {
     // In place of each line the parabola with the curvature of f on its far
-    // side that meets f at both ends.
+    // side that meets f at both ends. A parabola c/2 s^2 + slope s through the
+    // values at a and b has slope = (f(a) - f(b)) / (a - b) - c/2 (a + b).
     std::vector<EnergyPiece> pieces;
     // From the end of what there is already down to @p end.
     const auto add =

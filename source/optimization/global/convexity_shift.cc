@@ -28,6 +28,8 @@ namespace Debond
     DenseCholesky
     factorise_safely(Eigen::MatrixXd A)
     {
+      // If the factorisation of A less this shift ends without a pivot that is
+      // not positive, A itself is positive definite in spite of rounding.
       const double n     = double(A.rows());
       const double shift = (n + 3.) * 2. * Tolerance::epsilon * n;
       A.diagonal() -= shift * A.diagonal().cwiseAbs();
@@ -107,6 +109,10 @@ namespace Debond
               const std::vector<unsigned int> &which,
               Eigen::VectorXd                 &D)
   {
+    // One coordinate after the other goes towards where the derivative of v'D +
+    // mu log det (A - D) with respect to it is zero. Only the block of (A -
+    // D)^{-1} for these coordinates is needed, and is updated with each step in
+    // O(n^2).
     const unsigned int n = static_cast<unsigned int>(which.size());
     Eigen::MatrixXd    P(n, n);
     for (unsigned int l = 0; l < n; ++l)

@@ -67,6 +67,8 @@ namespace Debond
           }
       if (free.empty())
         return;
+      // The matrix is A, which is positive definite, with the curvatures of the
+      // envelopes, which are not negative, so that there is a factor.
       const Eigen::VectorXd load = problem.g - problem.A * s;
       Eigen::MatrixXd       K(free.size(), free.size());
       Eigen::VectorXd       r(free.size());
@@ -102,7 +104,9 @@ namespace Debond
     for (unsigned int step = 0; step < maximum_newton_steps; ++step)
       {
         // Where each unknown would go by itself tells its place; if no place
-        // changes the point is the minimum.
+        // changes the point is the minimum. By itself unknown i goes to the
+        // least of A_ii/2 (s_i - z_i)^2 + e_i(s_i), with z_i = s_i - gradient_i
+        // / A_ii; s is the minimum if and only if none moves.
         const Eigen::VectorXd gradient = problem.A * s - problem.g;
         old_places.swap(places);
         places.resize(s.size());
@@ -168,6 +172,10 @@ namespace Debond
                      const unsigned int piece,
                      const double       inverse_diagonal) const
   {
+    // The bound without s_i's own term, which is least_i in it, and with that
+    // term at s_i on the piece in its place:
+    //
+    //     value + (r_i s_i + f_i(s_i) - least_i) + quadratic/2 (s_i - x_i)^2.
     const PiecewiseEnergy::Piece &p = problem.f[i].pieces[piece];
     const double                  quadratic =
       1. / ((1. + Tolerance::outwards) * inverse_diagonal);

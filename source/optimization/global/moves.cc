@@ -134,6 +134,8 @@ namespace Debond
         NodeSet below, above;
         for (unsigned int i = 0; i < state.size(); ++i)
           (state[i] >= piece ? below : above).insert(i);
+        // With the paper's law the lower patches are broken, the upper ones
+        // hold.
         const std::vector<NodeSet> lower = connected_parts(below, graph);
         const std::vector<NodeSet> upper = connected_parts(above, graph);
 

@@ -69,6 +69,13 @@ namespace Debond
           const double       tolerance,
           const unsigned int maximum_rounds)
       {
+        // A round has four steps. A diagonal D is moved from S to the terms;
+        // the envelopes of the terms on the box make a convex relaxation; at
+        // its minimum x LowerBound gives a bound for the box, which holds for
+        // any x; and what cannot be below the best value is cut off the box. In
+        // the smaller box the envelopes are tighter, and D is chosen anew, so
+        // that the next round has a higher bound. When more rounds gain too
+        // little, the node is divided.
         NodeResult result;
         for (unsigned int round = 0;; ++round)
           {
@@ -93,7 +100,9 @@ namespace Debond
                 return result;
               }
             // The convexity that the relaxation was made with is where the next
-            // one starts, and where those of the halves do.
+            // one starts, and where those of the halves do. A node that has
+            // inherited a shift keeps it over its first round, whose own D,
+            // which leaves much in A, is there to shrink the box.
             if (round > 0 || node.shift.isZero(0.))
               {
                 for (unsigned int i = 0; i < n; ++i)
@@ -137,6 +146,7 @@ namespace Debond
       std::vector<unsigned int>
       undecided() const
       {
+        // A term is convex with its D where its envelope has no line.
         std::vector<unsigned int> result;
         for (unsigned int i = 0; i < n; ++i)
           if (std::any_of(envelopes[i].parts.begin(),
@@ -260,6 +270,8 @@ namespace Debond
             const double          split = place_to_split(i);
             std::array<double, 2> halves;
             halves.fill(infinity);
+            // Bounds of the halves by what s_i has to be there, from this
+            // relaxation: no new one is made for a choice.
             for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
               for (const unsigned int half : {0, 1})
                 halves[half] =
@@ -294,6 +306,8 @@ namespace Debond
         const double                nowhere = infinity;
         double                      split   = nowhere;
         const ConvexEnvelope::Part *longest = nullptr;
+        // Kinks under any line of the envelope count, even if x is on another
+        // part.
         for (const ConvexEnvelope::Part &part : envelopes[i].parts)
           if (part.is_line)
             {
@@ -328,21 +342,23 @@ namespace Debond
   NodeBound::root(const double best_value) const
   {
     // Without Phi, which is not negative, the functional is a parabola with its
-    // minimum at s_0. Points with at most the best value are in an ellipsoid
-    // about s_0, and the box is around that.
+    // minimum at s_0 = S^{-1} g and the value -1/2 g's_0 there. Points with at
+    // most the best value are within the energy distance (2 (best + 1/2
+    // g's_0))^{1/2} of s_0, and s_i by that times ((S^-1)_ii)^{1/2}, which
+    // makes the box.
     const auto inverse = safe_inverse(S);
     if (!inverse)
       return {};
     const Eigen::VectorXd s_0 = *inverse * g;
 
-    // Phi is not negative.
+    // The bound of the box is that of LowerBound, with the term zero for Phi.
     const PiecewiseEnergy zero        = PiecewiseEnergy::zero();
     BoxProblem            without_phi = {S,
                                          g,
                                          std::vector<ShiftedEnergy>(n, {0., {zero[0]}}),
                                          Eigen::VectorXd(),
                                          upper};
-    // Within this distance of s_0 by the energy, and a little more.
+    // The square of the distance; the box is a little larger.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
     without_phi.lower =
       (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
@@ -414,6 +430,8 @@ namespace Debond
   NodeBound::balls(const ProofNode &node) const
   {
     std::vector<NodeBall> result;
+    // The shift that the node's bound was raised with gives a high value, that
+    // of a first relaxation leaves a large A. Both balls hold.
     for (const bool is_first : {false, true})
       {
         ProofNode own = node;

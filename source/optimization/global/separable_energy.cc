@@ -26,6 +26,8 @@ namespace Debond
         s(i) = stretch;
         return;
       }
+    // A bond that is stretched keeps the direction of its jump; one at rest has
+    // none.
     const double before = stretches(s)(i);
     for (unsigned int j = 0; j < s.size(); ++j)
       if (bonds[j] == i)

@@ -140,6 +140,9 @@ namespace Debond
         factor.compare(M);
         try
           {
+            // The exchange of all wrong indices at once takes few systems if it
+            // ends. If it wanders, projected Newton steps from its last point
+            // take over, along which the functional falls.
             if (!exchange())
               descend();
           }
@@ -334,6 +337,8 @@ namespace Debond
                         const double           mu_noise,
                         ActiveSet             &active)
   {
+    // Indices are wrong in two ways: active with a multiplier that pulls, and
+    // free beyond the bound. Either way the index changes sides.
     std::vector<unsigned int> wrong;
     for (unsigned int i = 0; i < active.size(); ++i)
       if (active[i] != 0 ? mu(i) < -mu_noise : excess(i) > excess_noise)

@@ -52,6 +52,9 @@ namespace Debond
     if (level == levels.size())
       return active;
 
+    // The problem of the next coarser space is that of x = P y: Galerkin
+    // products of S and E, and P'r. Its own active set is guessed in the same
+    // way first, so that each space has an active set that is nearly right.
     const Eigen::SparseMatrix<double> &P = levels[level].P;
     const Eigen::SparseMatrix<double>  coarse_E =
       P.transpose() * Eigen::SparseMatrix<double>(E * P);
