@@ -276,10 +276,10 @@ namespace Debond
   std::vector<Eigen::VectorXd>
   EquilibriumProblem<dim>::stresses(const DofVector &unknowns) const
   {
-    // An unknown is what is left of the displacement without the lifting, so
-    // that the lifting is added before cells turn the displacements of their
-    // sides into a stress. Tractions are continuous between cells only to the
-    // accuracy of the solution; rounding_of() says what that may cost.
+    // An unknown is a displacement less the lifting, so that the lifting is
+    // added before cells turn the displacements of their sides into a stress.
+    // Tractions are continuous between cells only to the accuracy of the
+    // solution; rounding_of() says what that may cost.
     std::vector<Eigen::VectorXd> result;
     for (const auto &cell : mesh.triangulation.active_cell_iterators())
       {

@@ -166,7 +166,7 @@ namespace Debond
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
         double       least    = std::numeric_limits<double>::infinity();
-        // D grows by factors, up to what the triangle has. It ends where the
+        // D grows by factors, up to what the triangle has. It ends once the
         // piece is certain, as more would only cost stiffness.
         for (double D = best; D < available(i); D *= 1.2)
           {
@@ -239,7 +239,7 @@ namespace Debond
       // The existence of the inverse is the proof that the problem is convex in
       // the others. The others lower the energy by 1/2 r'A_oo^{-1} r for forces
       // r on them, and safe_inverse() is not below the true inverse: with it
-      // what is left is a lower bound for all s.
+      // what remains is a lower bound for all s.
       auto inverse = safe_inverse(A(others, others));
       if (!inverse)
         return false;

@@ -34,8 +34,8 @@ namespace Debond
       // follow each other by nodes, so that quotients by the height and the
       // width of the blocks are nodes. Columns are local numbers there and
       // become those of the whole. The rows of a node may have different
-      // columns, and the blocks in these are zero where a row has none; a node
-      // has few, so that a linear search finds them.
+      // columns, and the blocks in these are zero if a row has none; a node has
+      // few, so that a linear search finds them.
       Prolongation result;
       result.n_own_columns = P.DomainMap().NumMyElements() / width;
       result.rows.height   = height;

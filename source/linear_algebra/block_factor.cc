@@ -104,6 +104,8 @@ namespace Debond
     Eigen::VectorXd f_i(n_eliminated);
     for (unsigned int i = 0; i < n_eliminated; ++i)
       f_i(i) = f(elimination.unknowns[i]);
+    // All ranks have the same f and get the same x; only the product with A_si
+    // is in parts.
     const Eigen::VectorXd x = solve(f_i);
     Eigen::VectorXd       g = -(A_is.transpose() * x);
     sum(g);

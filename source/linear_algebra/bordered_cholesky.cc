@@ -88,6 +88,8 @@ namespace Debond
     for (unsigned int l = 0; l < in_F.size(); ++l)
       for (unsigned int k = l; k < in_F.size(); ++k)
         L(k, l) = M(in_F[k], in_F[l]);
+    // M is kept as a whole, since compare() has to find out which of its rows
+    // differ later, free or not.
     M_of_F = M;
     has_changed.assign(M.rows(), 0);
     for (auto *set : {&added, &removed})
@@ -166,6 +168,8 @@ namespace Debond
       is_free[i] = 1;
     added.clear();
     removed.clear();
+    // In the order of F and of the free indices, which solve_in_place() relies
+    // on.
     for (const unsigned int i : in_F)
       if (is_free[i] == 0 || has_changed[i] != 0)
         removed.push_back(i);

@@ -53,6 +53,8 @@ namespace Debond
   bool
   UpdatableCholesky::compute(const Eigen::MatrixXd &K)
   {
+    // LAPACK overwrites what it factorises; the factor is kept in the storage
+    // that has room for more rows.
     Eigen::MatrixXd lower  = K;
     const bool      exists = factorise(lower);
     n                      = exists ? static_cast<unsigned int>(K.rows()) : 0;
@@ -69,8 +71,8 @@ namespace Debond
   {
     // The new row l of the factor has L l = column. The new pivot, diagonal -
     // |l|^2, is what the new row has that the others do not: the squared
-    // distance of its vector from their span if K is a Gram matrix. Where it is
-    // rounding, the factor is not extended.
+    // distance of its vector from their span if K is a Gram matrix. If it is no
+    // more than rounding, the factor is not extended.
     Eigen::VectorXd row = column;
     factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(row);
 

@@ -332,6 +332,8 @@ namespace Debond
       for (unsigned int node = 0; node < n; ++node)
         position[node] = next[static_cast<int>(is_kept[node])]++;
 
+      // The rows of a node's unknowns have the same neighbours, unless one is
+      // held. The set joins them.
       std::set<int> column;
       for (unsigned int node = 0; node < n; ++node)
         {

@@ -35,6 +35,8 @@ namespace Debond
     // nothing.
     Eigen::SparseMatrix<double>       now     = matrix;
     const Eigen::SparseMatrix<double> changes = gather(change, matrix.cols());
+    // Entries of which rounding alone remains become zero, by the same rule as
+    // on the other levels.
     for (int j = 0; j < changes.outerSize(); ++j)
       for (Eigen::SparseMatrix<double>::InnerIterator entry(changes, j); entry;
            ++entry)

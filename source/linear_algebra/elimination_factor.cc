@@ -9,6 +9,7 @@ namespace Debond
   std::vector<int>
   Elimination::positions(const unsigned int n) const
   {
+    // Rows that are left out, such as those of constrained unknowns, keep -1.
     std::vector<int> result(n, -1);
     for (unsigned int i = 0; i < unknowns.size(); ++i)
       result[unknowns[i]] = static_cast<int>(i);

@@ -153,6 +153,7 @@ namespace Debond
                  l < P.starts[pattern.columns[k] + 1];
                  ++l)
               {
+                // A place that is new is the next one behind the blocks so far.
                 const std::size_t place = found.insert(P.columns[l]);
                 if (place * n * m == MP.size())
                   MP.resize(MP.size() + n * m, 0.);

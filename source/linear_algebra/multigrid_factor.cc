@@ -57,6 +57,8 @@ namespace Debond
                                   static_cast<int>(n_eliminated);
                     i >= 0)
                   column(i) += entry->value();
+            // The product with A_si and the row of A_ss are added up by one
+            // exchange.
             sum(column);
             for (unsigned int i = 0; i < n_kept; ++i)
               S(i, k) = column(i);
@@ -71,9 +73,9 @@ namespace Debond
       solve(const Eigen::VectorXd &b) const override
       {
         // Conjugate gradients from zero. The residual that is aimed at may be
-        // below what rounding allows; so the iteration ends where it stagnates,
-        // too, and what has been reached is accepted down to required_residual.
-        // deal.II throws NoConvergence in both cases.
+        // below what rounding allows; so the iteration also ends if it
+        // stagnates, and what has been reached is accepted down to
+        // required_residual. deal.II throws NoConvergence in both cases.
         DistributedVector right(own, ranks), x(own, ranks);
         for (unsigned int i = 0; i < n_eliminated; ++i)
           if (const unsigned int row = elimination.unknowns[i];

@@ -116,7 +116,7 @@ namespace Debond
         for (auto k = change.starts[r]; k < change.starts[r + 1]; ++k)
           {
             // Entries that cancel but for rounding become zero, and a diagonal
-            // of which nothing is left keeps its value. The sum is formed in
+            // of which nothing remains keeps its value. The sum is formed in
             // double precision from an entry in single precision, which is why
             // what counts as rounding is that of floats.
             const unsigned int column = change.columns[k];
@@ -174,6 +174,8 @@ namespace Debond
   MultigridLevel::prolongate(SinglePrecisionVector       &fine,
                              const SinglePrecisionVector &coarse) const
   {
+    // Own rows of P have columns at coarse nodes of other ranks, whose values
+    // the ghosts bring.
     coarse.update_ghost_values();
     fine = 0.f;
     add_product<false>(prolongation,

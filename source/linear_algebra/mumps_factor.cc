@@ -189,6 +189,7 @@ namespace Debond
         mumps.irn_loc = own.rows.data();
         mumps.jcn_loc = own.columns.data();
         mumps.a_loc   = own.values.data();
+        // The kept unknowns are the last of the elimination, numbered from 1.
         std::vector<MUMPS_INT> kept(n_kept);
         std::iota(kept.begin(), kept.end(), n_eliminated + 1);
         if (n_kept > 0)

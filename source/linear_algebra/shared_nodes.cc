@@ -187,6 +187,8 @@ namespace Debond
     if (!std::is_sorted(summands.begin(), summands.end(), is_before))
       std::stable_sort(summands.begin(), summands.end(), is_before);
 
+    // One pass over the sorted summands: another row ends the one before, and a
+    // summand with the place of the last one is added to it.
     NumberedRows result;
     result.height = result.width = rows.width;
     result.columns.reserve(summands.size());

@@ -128,6 +128,8 @@ namespace Debond
     for (unsigned int &column : rows.columns)
       column = nodes.local(column);
     levels.push_back(std::make_unique<MultigridLevel>(nodes));
+    // In single precision already: `rows` has floats, and only one row at a
+    // time is in double precision.
     rows.values.reserve(rows.columns.size() * n * n);
     places.resize(nodes.n_local());
     for (unsigned int i = 0; i < nodes.n_own(); ++i)
@@ -151,7 +153,7 @@ namespace Debond
   {
     // The places of the row's blocks by local numbers of their nodes are looked
     // up in an array as long as there are local nodes. What earlier rows have
-    // left in it does no harm, as A has no entry outside of the row's own
+    // written there does no harm, as A has no entry outside of the row's own
     // pattern.
     const dealii::SparseMatrix<double> &A     = finest.A.A;
     const SharedNodes                  &nodes = levels.front()->nodes;
@@ -235,6 +237,8 @@ namespace Debond
                          true);
     make_positive(coarse_rows);
 
+    // Now that the rows of coarse nodes are known, so are all coarse nodes that
+    // this rank has to do with, and the level can be numbered.
     std::vector<unsigned int> needed = coarse_rows.columns;
     needed.insert(needed.end(), P.columns.begin(), P.columns.end());
     nodes.set_ghosts(needed);
@@ -336,7 +340,7 @@ namespace Debond
             }))
           continue;
         // The blocks are those of A + E, then masked by Q from both sides, less
-        // those of A. On the diagonal of a held unknown -a_ii is left, and
+        // those of A. On the diagonal of a held unknown -a_ii remains, and
         // changed() makes the entry of the level a_ii again, which is D (I -
         // Q).
         const double *const A = finest_blocks(pattern, i);

@@ -126,6 +126,7 @@ namespace Debond
     double upper = 0., last_rounding = 0.;
     for (const EnergyPiece &piece : given)
       {
+        // The pieces have to follow each other from 0 downwards without a gap.
         const bool is_last = &piece == &given.back();
         require_of(std::isfinite(piece.curvature) &&
                      std::isfinite(piece.slope) && piece.decay >= 0. &&
@@ -248,6 +249,8 @@ namespace Debond
     if (const Piece &here = pieces[index(s)];
         reached == 0. && here.is_above && pieces[0].slope == 0.)
       return here.curvature;
+    // With a memory f is a secant parabola above `reached` and the law below
+    // it, and the majorant at s has to be above both parts.
     const Piece own        = piece_at(s, reached);
     const bool  has_secant = !returns_on_a_piece(reached);
     if (own.is_above && (own.is_flat() || !has_secant))
@@ -376,6 +379,9 @@ namespace Debond
   void
   PiecewiseEnergy::connect()
   {
+    // f is continuous by its constants: each piece begins with the value at
+    // which the one before ends. They are sums of terms that may be far larger
+    // than they are, so that they are in extended precision.
     for (unsigned int k = 1; k < pieces.size(); ++k)
       {
         const Piece      &last = pieces[k - 1];

@@ -222,6 +222,9 @@ namespace Debond
     Eigen::VectorXd speeds = slope(free), point = rest(free);
     for (unsigned int k = 0; k < free.size(); ++k)
       {
+        // Of the force r_i of a piece, w_i/l_i (c s_i/l_i + slope), the part
+        // with s_i is in the matrix, and the constant part is moved to the
+        // right side.
         const Bond &bond = bonds[free[k]];
         point(k) -=
           bond.energy / bond.stretch * f[(segments[free[k]] - 1) / 2].slope;
@@ -244,6 +247,11 @@ namespace Debond
   StationaryPath::Event
   StationaryPath::advance(const double lower, const double upper)
   {
+    // One straight part of the curve, from the point where it is to the next
+    // breakpoint. On it the free s_i and the forces of all others are affine in
+    // t, with speeds from one linear system. The part ends at the first s_i or
+    // force that comes to an end of its segment, which then changes; whether t
+    // rises or falls on the next part, the speeds there say.
     if (!factorise())
       return Event::no_stiffness;
     solve();

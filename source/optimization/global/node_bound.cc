@@ -146,7 +146,7 @@ namespace Debond
       std::vector<unsigned int>
       undecided() const
       {
-        // A term is convex with its D where its envelope has no line.
+        // A term is convex with its D if its envelope has no line.
         std::vector<unsigned int> result;
         for (unsigned int i = 0; i < n; ++i)
           if (std::any_of(envelopes[i].parts.begin(),

@@ -55,6 +55,8 @@ namespace Debond
           std::array<long double, at_once>    sum;
           for (Eigen::Index k = 0; k < at_once; ++k)
             {
+              // Beyond the last index it is the last one again, whose sum is
+              // not written then.
               const Eigen::Index i = std::min(first + k, n - 1);
               column[k]            = M.col(i).data();
               sum[k]               = r(i);
@@ -224,6 +226,8 @@ namespace Debond
         const Eigen::VectorXd projected = result.x.cwiseMin(b);
         Eigen::VectorXd       left      = force;
         for (unsigned int i = 0; i < n; ++i)
+          // The force at the projected point is that of the last one less M
+          // times what the projection has moved.
           if (projected(i) < result.x(i))
             left += M.col(i) * (result.x(i) - projected(i));
         return (projected.array() < b.array())

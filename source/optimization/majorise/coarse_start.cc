@@ -90,8 +90,10 @@ namespace Debond
       return Eigen::VectorXd::Zero(problem.g.size());
 
     const Eigen::SparseMatrix<double> &P = prolongations.front();
-    // Symmetric to the last digit, as factorisations read one triangle and
-    // products both.
+    // The functional on the subspace s = P y is J itself, not an approximation
+    // of it: the law stays at the points of the finest boundary, at the s that
+    // y stands for. S is symmetric to the last digit, as factorisations read
+    // one triangle and products both.
     const Eigen::MatrixXd    product = P.transpose() * (problem.S * P).eval();
     const Eigen::MatrixXd    S       = 0.5 * (product + product.transpose());
     const Eigen::VectorXd    g       = P.transpose() * problem.g;

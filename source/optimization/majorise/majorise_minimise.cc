@@ -46,6 +46,8 @@ namespace Debond
     const auto evaluate = [&]() {
       MajorantProblem::State state = problem.evaluate();
       if (state.largest_force > 0.)
+        // Without loads, or with loads that are rounding, the largest force is
+        // no scale. Forces below zero_force count as rounding then.
         state.residual_rounding =
           std::max(state.residual_rounding,
                    parameters.zero_force / state.largest_force);
@@ -56,8 +58,12 @@ namespace Debond
       result.functional = state.functional;
       result.residual   = state.residual;
     };
-    // J(x_{k+1}) <= majorant(x_{k+1}) <= majorant(x_k) = J(x_k), for the
-    // majorant that touches J at x_k: so J never rises, but for rounding.
+    // For the majorant that touches J at x_k,
+    //
+    //     J(x_{k+1}) <= majorant(x_{k+1}) <= majorant(x_k) = J(x_k):
+    //
+    // the first step because it is nowhere below J, the second because x_{k+1}
+    // minimises it. So J never rises, but for rounding.
     bool interrupted = false;
     while (true)
       {
