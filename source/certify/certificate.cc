@@ -255,6 +255,8 @@ namespace Debond
       double
       integral(const Function &function) const
       {
+        // The rule has points inside of the side, at each of which the gap is
+        // the linear function of its values at the corners.
         double sum = 0.;
         for (const auto &[barycentric, weight] : side_rule<dim>())
           sum += weight * side.measure *
@@ -361,6 +363,8 @@ namespace Debond
           traces.emplace_back(sides[i], fields.unknowns(), displacement);
           pieces.push_back(laws[i][laws[i].index(traces[i].mean())]);
         }
+      // The means w_k whose stresses give the bound. It would hold for any
+      // others, as h is integrated exactly for the tractions that they lead to.
       const Eigen::VectorXd x =
         fixed_state_displacement<dim>(sides, traces, pieces, S, g);
 
@@ -668,6 +672,8 @@ namespace Debond
     if (std::abs(rest) > own_rounding(certificate, fields.strain_energy(u)))
       {
         certificate.loads_are_exact = false;
+        // A displacement is admissible whatever the loads are, so that the
+        // upper number is right with the true ones.
         certificate.upper += rest;
         certificate.lower -= std::abs(rest);
       }

@@ -20,6 +20,8 @@ namespace Debond
     std::string
     no_certificate(const Work &work)
     {
+      // A run has its result without a certificate, too, so that these errors
+      // become a note.
       std::string reason;
       try
         {

@@ -115,6 +115,7 @@ namespace Debond
       {
         for (const ContactSide &side : problems.contact_sides())
           {
+            // At first nothing is known but u_nu <= 0 for the mean.
             known.sides.emplace_back();
             known.sides.back().ends = side.corners;
           }
@@ -190,6 +191,8 @@ namespace Debond
         bound.status == ProofStatus::no_bound ?
           -std::numeric_limits<double>::infinity() :
           problem->constant + bound.lower - problem->rounding;
+      // Where the finite problem is least, the eliminated means and slopes
+      // follow from the kept means.
       values = problem->all(bound.s);
       // Each D gives a bound for the same number, and the best one counts.
       if (lower > known.lower)

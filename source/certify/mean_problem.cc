@@ -173,6 +173,9 @@ namespace Debond
             const RoundedEnergy rounded(law, D);
             const bool          is_certain =
               rounded.exact_piece(ranges[i].linear()).has_value();
+            // Beyond this a shift rounds the law by so little that only one
+            // that makes the piece certain is worth the stiffness that it
+            // takes.
             if (!is_certain && D > largest_uncertain_shift * a)
               continue;
             double cost = D * of_stiffness;
@@ -300,6 +303,8 @@ namespace Debond
         const PiecewiseEnergy   &law    = laws[i];
         const RoundedEnergy      rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
+        // Theorem 2 asks for the range of p, the law of Theorem 1 for that of
+        // its mean.
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
         // By Theorem 2 a side whose range is on one piece has a quadratic term
         // in m and k, and its mean is eliminated if it is not in contact; by

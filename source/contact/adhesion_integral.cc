@@ -261,6 +261,8 @@ namespace Debond
         for (unsigned int k = 0; k < contact_boundary().n_face_nodes(); ++k)
           if (!face.is_held(k))
             {
+              // Polynomials through the values at the points may be positive at
+              // a vertex, which is no memory.
               double &reached = reached_of_nodes[face.node(k)];
               reached         = std::max(reached, std::min(memory[k], 0.));
             }
@@ -433,7 +435,8 @@ namespace Debond
   {
     // Where bonds soften this is less than curvature(), and S + Phi'' may be
     // indefinite. That is what the search along lines and the test for a local
-    // minimum have to see.
+    // minimum have to see. Along the jump it is the law's own second
+    // derivative, across it tau/l.
     return matrix(
       s,
       [this](const double stretch, const double reached) {
@@ -480,6 +483,7 @@ namespace Debond
     double      first      = 1.;
     const auto *next_point = next.points().list().data();
     for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      // Both have the same points, in the same order.
       const auto     &to  = *next_point++;
       const Jump<dim> way = {to.normal_displacement(next_s) -
                                point.normal_displacement(s),

@@ -79,6 +79,7 @@ namespace Debond
       return {bonds.energy / bonds.stretch *
                 phi.adhesive_law().derivative(stretch, reached),
               {}};
+    // Per area: the same as in Phi without the weight of a point.
     const double stiffness = bonds.energy / (bonds.stretch * bonds.stretch) *
                              phi.adhesive_law().secant(stretch, reached);
     Jump<dim> result = point.jump(s);

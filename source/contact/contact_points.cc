@@ -27,7 +27,9 @@ namespace Debond
   void
   ContactPoints<dim>::set_factor(const double factor)
   {
-    // Without held vertices nothing in the points depends on the load.
+    // Prescribed displacements are parts of the points' offsets, which are
+    // computed anew. Without held vertices nothing in the points depends on the
+    // load.
     load_factor = factor;
     if (!contact.held_vertices.empty())
       collect_points();
@@ -227,6 +229,8 @@ namespace Debond
         const bool is_held = face.is_held(k);
         if (shape[k] == 0. || (is_held && contact.held_vertices.empty()))
           continue;
+        // Nodes and held vertices have tangents alike. A tangent that is
+        // prescribed is part of the offset, which grows with the load.
         const auto add = [&](const auto &vertex) {
           for (const auto &tangent : vertex.tangents)
             {
@@ -374,6 +378,8 @@ namespace Debond
         const auto shape = bernstein(rule[q].barycentric, contact.degree);
         for (unsigned int k = 0; k < n; ++k)
           shapes(q, k) = shape[k];
+        // The point nearest to a point of the rule is that point, or with nodal
+        // quadrature its node.
         at_points(q) = values[nearest(face, rule[q].barycentric)];
       }
     Trace result;

@@ -175,6 +175,7 @@ namespace Debond
   std::vector<double>
   AdhesiveLaw::kinks() const
   {
+    // Pieces end where the second derivative may jump.
     std::vector<double> result;
     // From the last piece upwards; at 0 there is a kink if bonds pull or are
     // stiff there, for above it there is nothing.

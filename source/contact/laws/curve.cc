@@ -246,6 +246,8 @@ namespace Debond
         {
           std::string points, file;
         };
+        // The table keeps references to the variables until the scene has been
+        // read, and the maker uses them then.
         const auto entries = std::make_shared<Entries>();
         table.bind(
           curve_path,

@@ -89,6 +89,8 @@ namespace Debond
     Pattern
     quantity_or_expression(const bool may_be_zero)
     {
+      // A text that is a number has to be a quantity; any other text may be an
+      // expression, which is checked where it is evaluated.
       const Pattern number = quantity(may_be_zero);
       return Pattern(number.description() + ", or an expression",
                      [number](const std::string &value) {
@@ -109,6 +111,7 @@ namespace Debond
     {
       std::string result;
       for (const char c : formula)
+        // Brackets, as p and q may be sums.
         result += c == 'P' ? '(' + p + ')' :
                   c == 'Q' ? '(' + q + ')' :
                              std::string(1, c);
