@@ -363,8 +363,8 @@ namespace Debond
           traces.emplace_back(sides[i], fields.unknowns(), displacement);
           pieces.push_back(laws[i][laws[i].index(traces[i].mean())]);
         }
-      // The means w_k whose stresses give the bound. It would hold for any
-      // others, as h is integrated exactly for the tractions that they lead to.
+      // The means w_k whose stresses give the bound. Any others would give one,
+      // too, as h is integrated exactly for the tractions that they lead to.
       const Eigen::VectorXd x =
         fixed_state_displacement<dim>(sides, traces, pieces, S, g);
 
@@ -520,6 +520,12 @@ namespace Debond
                           const Interruption             &interruption,
                           const Certificate              *earlier) const
   {
+    // The upper number is J of the displacement, which is admissible in the
+    // continuous problem. The lower one is that of equilibrated stresses: for
+    // the branches as they are first, which also gives the parts of the gap by
+    // cells, and then, if branches may change and this is asked for, by branch
+    // and bound over the means of the contact sides. Both are moved outwards by
+    // what rounding and loads that are not linear may cost.
     const ElasticFields<dim> &fields = scene->problem().fields();
     const DofVector           displacement =
       scene->problem().unknowns().cartesian_displacement(u);

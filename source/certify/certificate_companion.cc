@@ -46,11 +46,11 @@ namespace Debond
             return;
           }
         // What doc/reference/certificate.md does not prove is refused while the
-        // scene is read: tension and shear that the law couples, radii in the
-        // integrals, several bodies, a foundation along which s is not v_nu,
-        // changes of temperature whose stress is no pressure, and laws for
-        // which the branch between two kinks is concave. Bonds that lose their
-        // traction at once are those of Theorem 1.
+        // scene is read: bonds that bear shear, radii in the integrals, several
+        // bodies, a foundation along which s is not v_nu, changes of
+        // temperature whose stress is no pressure, and laws that soften
+        // gradually. Bonds that lose their traction at once are those of
+        // Theorem 1.
         const auto refuse = [&table](const bool                      is_so,
                                      const std::string              &reason,
                                      const std::vector<std::string> &others) {

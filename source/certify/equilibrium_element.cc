@@ -341,8 +341,8 @@ namespace Debond
     //     Z'MZ y = (TZ)'l - Z'M given r,
     //
     // from which stiffness K = TZ (Z'MZ)^{-1} (TZ)', force F and energy follow
-    // as for a displacement element. K is formed as Y'Y, so that it is
-    // symmetric and semidefinite to the last bit.
+    // as for a displacement element. K is the product Y'Y with Y = L^{-1} (TZ)'
+    // and Z'MZ = LL'.
     const Eigen::MatrixXd             Z = mapped_basis<dim>(corners);
     const Eigen::LLT<Eigen::MatrixXd> factor(Z.transpose() * M * Z);
     const Eigen::MatrixXd             b       = Z.transpose() * (M * given);

@@ -142,6 +142,12 @@ namespace Debond
                                     const VectorView       &last_s,
                                     const VectorView       &s)
   {
+    // An energy G(m) that depends on the part of shear m has a potential only
+    // if m is fixed, so that each step of a load path has one m at each point,
+    // that of the state before. Bonds that bore nothing then have no mode but
+    // rounding; they get the m with which the straight way of their jump in
+    // this step first comes to the end of the first piece, and the step is done
+    // again if that matters.
     const auto *const toughness = contact_points.toughness_by_mode();
     if (toughness == nullptr)
       return 0.;
@@ -200,6 +206,9 @@ namespace Debond
   void
   AdhesionIntegral<dim>::freeze_mode()
   {
+    // From here to the next call the law of each point is that of G(m) with the
+    // m it remembers, at the same stiffness: a potential, which the methods
+    // need.
     const auto *const toughness = contact_points.toughness_by_mode();
     if (toughness == nullptr || broken.mixity.empty())
       return;

@@ -30,8 +30,8 @@ namespace Debond
       explicit Mumps(const MPI_Comm ranks)
         : DMUMPS_STRUC_C()
       {
-        // The first call, with job -1, sets the defaults; what is set before it
-        // are the three fields that it reads, and all controls come after it.
+        // The first call, with job -1, sets the defaults; it reads the three
+        // fields that are set before it, and controls can only be set after it.
         comm_fortran = MPI_Comm_c2f(ranks);
         par          = 1; // the first rank works, too
         // Symmetric: if told that A is positive definite (1), it changes pivots
@@ -84,8 +84,8 @@ namespace Debond
           }
         // INFOG(12) counts negative pivots and INFOG(25) tiny ones. As it has
         // been asked for a symmetric factorisation only, MUMPS does not
-        // complain about them, but without them A_ii is definite. -10 is an
-        // exact zero.
+        // complain about them, but without them A_ii is definite. Error -10
+        // says that it is singular.
         const int  error       = infog[0];
         const bool is_definite = infog[11] == 0 && infog[24] == 0;
         if (error == -10 || (what == 2 && error >= 0 && !is_definite))

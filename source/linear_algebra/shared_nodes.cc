@@ -111,8 +111,8 @@ namespace Debond
   SharedNodes::append_rows_of_ghosts(BlockRows<float> &rows) const
   {
     // Two exchanges: each rank tells the owners which rows it needs, and gets
-    // them. Both know with whom to speak only from this rank's ghosts, which is
-    // what some_to_some() is for. Rows are asked for in ascending order, and
+    // them. A rank knows whom it asks, but not who asks it, which
+    // some_to_some() finds out. Rows are asked for in ascending order, and
     // answers keep it.
     using dealii::Utilities::MPI::some_to_some;
     std::map<unsigned int, std::vector<unsigned int>> wanted;

@@ -348,8 +348,7 @@ namespace Debond
         for (auto e = first; e != entry; ++e)
           {
             // An entry of E outside of the pattern of A would need values that
-            // no rank has fetched, and a place that the coarser levels do not
-            // have.
+            // are not fetched, and a place that the coarser levels do not have.
             const auto column =
               std::find_if(begin, end, [&](const unsigned int j) {
                 return nodes.global(j) == e->column / n;

@@ -193,6 +193,10 @@ namespace Debond
               const MoveKind   kind,
               Eigen::VectorXd &point)
       {
+        // A trial: the nodes of the move are put on the other side of their
+        // kink, majorise-minimise takes the point to a minimum, and the search
+        // continues from there if J is lower. States say which trials have been
+        // made before.
         const std::vector<PiecewiseEnergy> &f = problem.lumped.f;
 
         // The nodes of the move go inside the piece, from where majorise-

@@ -163,6 +163,8 @@ namespace Debond
       Eigen::VectorXd
       minimum_on(const std::vector<unsigned int> &free)
       {
+        // With the active components at b, the free ones solve M_ff x_f = r_f -
+        // M_fa b_a.
         ++result.steps;
         Eigen::VectorXd x = b;
         for (const unsigned int i : free)
