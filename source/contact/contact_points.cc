@@ -219,9 +219,9 @@ namespace Debond
   {
     // Coefficients have the tangents of their own vertex, whose normal may be
     // the mean of several faces' normals. The rotation that takes that normal n
-    // to the face's normal N takes a tangent t into the plane of the face. That
-    // of n to N, which turns in the plane of both, is t - (t.N) / (1 + n.N) (n
-    // + N), with t.n = 0.
+    // to the face's normal N takes a tangent t into the plane of the face. If
+    // it turns in the plane of both, t becomes t - (t.N) / (1 + n.N) (n + N),
+    // as t.n = 0.
     if (point.bonds.shear == 0.)
       return;
     for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)

@@ -187,9 +187,9 @@ namespace Debond
         // -s. So j_1'(s) = rise s - at_zero, with the curvature and the slope
         // that a piece is described by.
         double rise = (last - t) / (next - p), at_zero = t - rise * p;
-        // A spring through 0 is that to rounding. Bonds return along a piece if
-        // its slope is exactly zero; a remainder of rounding would make them
-        // return along a secant instead.
+        // A part that goes through 0 but for rounding is a spring. Bonds return
+        // along a piece if its slope is exactly zero; a remainder of rounding
+        // would make them return along a secant instead.
         if (std::abs(at_zero) <= Tolerance::rounding_of_data * strength)
           {
             rise    = last / next;

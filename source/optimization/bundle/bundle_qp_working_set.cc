@@ -366,11 +366,12 @@ namespace Debond
             return true;
           }
 
-        // K = H + kappa 1 1' without the term of i has the null vector z =
-        // K^{-1} row. As both parts are semidefinite, the sum of z is zero and
-        // H without i has it as well: on (-z/u, mu_i = 1) sum lambda stays 1,
-        // and no component of d outside B changes, while mu of the bounds in B
-        // keeps d at them. The dual objective is linear along it.
+        // K = H + kappa 1 1' without the term of i has, to rounding, the null
+        // vector z = K^{-1} row. As both parts are semidefinite, the sum of z
+        // is zero and H without i has it as well: on (-z/u, mu_i = 1) sum
+        // lambda stays 1, and no component of d outside B changes, while mu of
+        // the bounds in B keeps d at them. The dual objective is linear along
+        // it.
         DualPoint direction{-row, Eigen::VectorXd::Zero(mu.size())};
         factor.solve_in_place(direction.lambda);
         direction.lambda /= u;

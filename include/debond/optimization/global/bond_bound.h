@@ -16,9 +16,8 @@ namespace Debond
    * entry n + i of a node's lower bounds is positive where bond i is broken,
    * that of the upper ones below 1 where it holds; the others are a box for z.
    *
-   * With A = S + the stiffness of bonds that hold - D, D a diagonal, and r = A
-   * x
-   * - g, for any x
+   * With A = S + the stiffness of bonds that hold - D, D a diagonal, and r =
+   * A x - g, for any x
    *
    *     J(z) >= -1/2 x'A x + sum_j (r_j z_j + D_j/2 z_j^2) + sum_i min(...),
    *
