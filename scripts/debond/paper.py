@@ -3,7 +3,6 @@
 
 import argparse
 import os
-import pathlib
 import shutil
 import subprocess
 
@@ -62,15 +61,13 @@ def make_pictures(program):
 
 
 def copy_study(name):
-    """The page without its plots, and those that pages show."""
+    """The table, if pages have it, and the plots that they show."""
     for plot, shown in STUDIES.get(name, {}).items():
         shutil.copy(f"output/{name}/plots/{plot}.png",
                     f"doc/pictures/paper-{shown}.png")
-    page = f"doc/notes/reproduction/{name}.md"
-    if os.path.exists(page):
-        with open(f"output/{name}/index.md", encoding="utf8") as file:
-            text = file.read().partition("![")[0].partition("The table with")
-        pathlib.Path(page).write_text(text[0].rstrip() + "\n")
+    shown = f"doc/notes/reproduction/{name}.csv"
+    if os.path.exists(shown):
+        shutil.copy(f"output/{name}/table.csv", shown)
 
 
 def main():
