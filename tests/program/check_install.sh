@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_install.sh DEBOND BUILD_DIRECTORY CMAKE: what is installed into an empty
-# directory runs there, also from Python, and its pages find each other; a program of
-# its own is built with the library; the Debian package has the same program.
+# directory runs there, also from Python, its pages find each other, and one has all
+# parameters; a program of its own is built with the library; the Debian package has
+# the same program.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 build=$2
 cmake=$3
@@ -24,6 +25,11 @@ env -u DEBOND PATH="$prefix/bin:/usr/bin:/bin" \
 grep -qx success log || fail "no success from Python: $(cat log)"
 "$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
+page=$prefix/share/doc/debond/doc/reference/parameters.md
+"$debond" --print-parameters | grep "^subsection" >sections
+while read -r section; do
+  grep -qx "$section" "$page" || fail "$page has no $section"
+done <sections
 
 # Sanitizers are options of whoever links.
 if ! grep -q "DEBOND_SANITIZE:BOOL=ON" "$build/CMakeCache.txt"; then
