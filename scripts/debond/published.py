@@ -14,6 +14,9 @@ from . import cases, peers, plots, report, runs
 from .runs import SOURCE
 
 PAGE = "doc/notes/published.md"
+# The tables beside the page, and what the page shows of them.
+SHOWN = {"problems": ["problem", "source", "quantity", "published", "Debond", "difference"],
+         "others": ["problem", "optimiser", "above the least", "says", "s"]}
 PROBLEMS = []
 E_STAR = 1. / 0.91  # of E = 1 and nu = 0.3
 LAMINATE = [(0., 0.), (0.5, 30.), (0.5, 20.), (1., 30.), (1., 15.), (2., 25.), (2., 0.)]
@@ -31,7 +34,7 @@ class Problem:
     solve: object
 
     def rows(self):
-        """Those of the table; title, source and seconds are of the first row."""
+        """Those of the table; the seconds are of the first row."""
         seconds, found, results = 0., [], None
 
         def timed_run(*arguments):
@@ -44,8 +47,8 @@ class Problem:
             bound = self.bounds[min(len(found), len(self.bounds) - 1)]
             found.append([quantity, stated, value, value / stated - 1., bound, *(
                 word or [state(results)]), results.summary["degrees_of_freedom"]])
-        return [[self.title, self.source, *row, seconds] if row is found[0] else
-                ["", "", *row, None] for row in found]
+        return [[self.title, self.source, *row, seconds if row is found[0] else None]
+                for row in found]
 
 
 def run(scene, settings=None):
@@ -370,17 +373,27 @@ def percent(part):
     return f"{100. * part:+.2g} %" if abs(part) < 10. else ""
 
 
-def write_to_page(name, text):
-    """Replaces the table of the page behind <!-- NAME -->."""
+def narrow(name, titles, rows):
+    """What the page shows; a problem and its source are in its first row."""
+    columns = [titles.index(title) for title in SHOWN[name]]
+    first = {row[0]: row for row in reversed(rows)}
+    return report.markdown(SHOWN[name], [
+        ["" if titles[k] in ("problem", "source") and row is not first[row[0]] else row[k]
+         for k in columns] for row in rows])
+
+
+def write_to_doc(name, titles, rows, shown):
+    """The table as CSV, and in place of that of the page behind <!-- NAME -->."""
+    report.write_csv(f"{SOURCE}/doc/notes/published/{name}.csv", titles, rows)
     page = pathlib.Path(SOURCE, PAGE)
     head, _, rest = page.read_text().partition(f"<!-- {name} -->\n\n")
-    page.write_text(f"{head}<!-- {name} -->\n\n{text}\n" + rest.partition("\n\n")[2])
+    page.write_text(f"{head}<!-- {name} -->\n\n{shown}\n" + rest.partition("\n\n")[2])
 
 
 def main():
     parser = argparse.ArgumentParser(
         prog="scripts/published", description="Runs Debond on problems that others have "
-        "published, and prints what they state beside what it finds.")
+        "published, and prints their results beside its own.")
     parser.add_argument("problems", metavar="WORD", nargs="*",
                         help="those whose title has one of these words; all if none")
     parser.add_argument("--others", action="store_true", help="optimisers of scipy, PETSc, "
@@ -391,7 +404,7 @@ def main():
     options = parser.parse_args()
     os.environ["DEBOND"] = os.path.abspath(options.debond or cases.build())
     tables = {"problems": (
-        ["problem", "source", "quantity", "stated", "Debond", "difference", "accepted",
+        ["problem", "source", "quantity", "published", "Debond", "difference", "accepted",
          "word or interval", "unknowns", "s"],
         [[*map(cell, row[:5]), percent(row[5]), f"{100. * row[6]:g} %", *row[7:9],
           f"{row[9]:.2g}" if row[9] else ""]
@@ -407,8 +420,8 @@ def main():
             [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
             for row in others()])
     for name, table in tables.items():
-        text = report.markdown(*table)
-        print("\n" + text, flush=True)
+        shown = narrow(name, *table)
+        print("\n" + shown, flush=True)
         if options.doc:
-            write_to_page(name, text)
+            write_to_doc(name, *table, shown)
     return 0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Published results: Debond differs from what each source states by no more than
-doc/notes/published.md accepts."""
+"""Published results: Debond differs from what each source states by no more than the
+bound of the problem, "accepted" in doc/notes/published/problems.csv."""
 import os
 
 from common import DEBOND
