@@ -19,7 +19,7 @@ namespace Debond
   namespace
   {
     /// With fewer unknowns two ranks take about twice the processor time of
-    /// one, or more, so that they are no faster (doc/notes/scale.md).
+    /// one, or more, so that they are no faster (doc/notes/speed.md).
     constexpr unsigned int worth_ranks = 100000;
 
 
