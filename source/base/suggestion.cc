@@ -69,7 +69,7 @@ namespace Debond
       if (std::regex_search(path, std::regex(words, std::regex::icase)))
         return "; Debond has no " + what +
                ", see 'What the model does not contain' in "
-               "doc/guide/manual.md";
+               "doc/guide/answers.md";
 
     // Case does not count in comparisons, and the section is compared apart
     // from the name: the same name in another section is a better guess than a
