@@ -6,6 +6,7 @@ import dataclasses
 import math
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy
@@ -308,7 +309,7 @@ def mixed_mode_bending(run):
         P = path["change_factor"][-1]
         word = path["minimum"][-1]
         yield f"load at the lever of {c} mm, N", load, 25.4 * P, word
-        yield ("its displacement, mm", lift,
+        yield (f"displacement at the lever of {c} mm, mm", lift,
                path["unit_load_work"][0] * P / path["factor"][0], word)
 
 
@@ -374,7 +375,16 @@ def percent(part):
 
 
 def narrow(name, titles, rows):
-    """What the page shows; a problem and its source are in its first row."""
+    """What the page shows: of quantities that only numbers tell apart, as on several
+    meshes, the one that differs most; a problem and its source are in its first row."""
+    if name == "problems":
+        series = {}
+        for row in rows:
+            key = row[0], re.sub(r"[\d.]+", "", row[2])
+            if key not in series or abs(float(row[5][:-2])) > abs(
+                    float(series[key][5][:-2])):
+                series[key] = row
+        rows = list(series.values())
     columns = [titles.index(title) for title in SHOWN[name]]
     first = {row[0]: row for row in reversed(rows)}
     return report.markdown(SHOWN[name], [
@@ -382,12 +392,13 @@ def narrow(name, titles, rows):
          for k in columns] for row in rows])
 
 
-def write_to_doc(name, titles, rows, shown):
-    """The table as CSV, and in place of that of the page behind <!-- NAME -->."""
+def write_to_doc(name, titles, rows):
+    """The table as CSV, and what the page shows of it behind <!-- NAME -->."""
     report.write_csv(f"{SOURCE}/doc/notes/published/{name}.csv", titles, rows)
     page = pathlib.Path(SOURCE, PAGE)
     head, _, rest = page.read_text().partition(f"<!-- {name} -->\n\n")
-    page.write_text(f"{head}<!-- {name} -->\n\n{shown}\n" + rest.partition("\n\n")[2])
+    page.write_text(f"{head}<!-- {name} -->\n\n{narrow(name, titles, rows)}\n" +
+                    rest.partition("\n\n")[2])
 
 
 def main():
@@ -420,8 +431,7 @@ def main():
             [*map(cell, row[:3]), percent(row[3]), row[4], f"{row[5]:.2g}"]
             for row in others()])
     for name, table in tables.items():
-        shown = narrow(name, *table)
-        print("\n" + shown, flush=True)
+        print("\n" + report.markdown(*table), flush=True)
         if options.doc:
-            write_to_doc(name, *table, shown)
+            write_to_doc(name, *table)
     return 0
