@@ -17,6 +17,22 @@ namespace Debond
 
 
   void
+  CsvTable::add_row(const std::vector<Cell> &cells)
+  {
+    std::vector<std::string> titles, row;
+    for (const auto &[title, text] : cells)
+      {
+        titles.push_back(cell(title));
+        row.push_back(text);
+      }
+    if (rows.empty())
+      rows.push_back(titles);
+    rows.push_back(row);
+  }
+
+
+
+  void
   CsvTable::write(const std::string &file_name) const
   {
     write_atomically(file_name, [&](std::ostream &out) {

@@ -18,76 +18,66 @@ namespace Debond
 
 
 
-    /// "0.2 0; 0.31 0"
-    template <int dim>
-    std::string
-    fronts_of(const LoadPathState<dim> &state)
+    /// The cells of a row of load_path.csv.
+    class Row
     {
-      std::string text;
-      for (const dealii::Point<dim> &front : state.fronts)
+    public:
+      std::vector<CsvTable::Cell> cells;
+
+      template <typename T>
+      void
+      add(const std::string &title, const T &value)
+      {
+        cells.push_back(CsvTable::titled(title, value));
+      }
+
+      template <int dim>
+      void
+      add(const std::string &title, const dealii::Tensor<1, dim> &vector)
+      {
         for (unsigned int d = 0; d < dim; ++d)
-          text += (d > 0        ? " " :
-                   text.empty() ? "" :
-                                  "; ") +
-                  shortest_text(front[d]);
-      return text;
-    }
+          add(title + '_' + "xyz"[d], vector[d]);
+      }
 
+      /// Of a list whose entries have names, with what they end with.
+      template <typename T>
+      void
+      add(const std::string                            &ending,
+          const std::vector<std::pair<std::string, T>> &list)
+      {
+        for (const auto &[name, value] : list)
+          add(name + ending, value);
+      }
 
+      /// "0.2 0; 0.31 0"
+      template <int dim>
+      void
+      add(const std::string                     &title,
+          const std::vector<dealii::Point<dim>> &points)
+      {
+        std::string text;
+        for (const dealii::Point<dim> &point : points)
+          for (unsigned int d = 0; d < dim; ++d)
+            text += (d > 0        ? " " :
+                     text.empty() ? "" :
+                                    "; ") +
+                    shortest_text(point[d]);
+        add(title, text);
+      }
 
-    /// The columns of the states that @p state_of finds in the steps, empty
-    /// where it is null; @p first tells what states have names for.
-    template <int dim, typename StateOf>
-    void
-    add_states(const std::vector<LoadPathStep<dim>> &steps,
-               const LoadPathState<dim>             &first,
-               const std::string                    &prefix,
-               const StateOf                        &state_of,
-               CsvTable                             &table)
-    {
-      using State    = LoadPathState<dim>;
-      const auto add = [&](const std::string &title, const auto &value) {
-        table.add(prefix + title, steps, [&](const LoadPathStep<dim> &step) {
-          const State *const state = state_of(step);
-          return state == nullptr ?
-                   std::nullopt :
-                   std::make_optional(std::invoke(value, *state));
-        });
-      };
-      const auto add_vector = [&](const std::string &title, const auto &value) {
-        for (unsigned int d = 0; d < dim; ++d)
-          add(title + '_' + "xyz"[d], [&value, d](const State &state) {
-            return std::invoke(value, state)[d];
+      template <int dim>
+      void
+      add(const std::string &prefix, const LoadPathState<dim> &state)
+      {
+        LoadPathState<dim>::for_each_number(
+          state, [&](const std::string &title, const auto &number) {
+            const std::size_t n = cells.size();
+            add(title, number);
+            for (std::size_t k = n; k < cells.size(); ++k)
+              cells[k].first = prefix + cells[k].first;
           });
-      };
-      add("minimum", &State::minimum);
-      add("J", &State::functional);
-      add("elastic_energy", &State::elastic_energy);
-      add("adhesion_energy", &State::adhesion_energy);
-      add("unit_load_work", &State::unit_load_work);
-      add("unit_displacement_work", &State::unit_displacement_work);
-      add("contact_part", &State::contact_part);
-      add("bonded_part", &State::bonded_part);
-      add("broken_part", &State::broken_part);
-      add("mean_gap", &State::mean_gap);
-      add("largest_gap", &State::largest_gap);
-      add("normal_force", &State::normal_force);
-      add_vector("contact_reaction", &State::contact_reaction);
-      add_vector("clamped_reaction", &State::clamped_reaction);
-      add("law_violation", &State::law_violation);
-      add("equilibrium_residual", &State::equilibrium_residual);
-      add("force_imbalance", &State::force_imbalance);
-      for (std::size_t k = 0; k < first.other_parts.size(); ++k)
-        add(first.other_parts[k].first + "_part",
-            [k](const State &state) { return state.other_parts[k].second; });
-      add("broken_zone", &State::broken_zone);
-      add("fronts", &fronts_of<dim>);
-      add("cell_size_at_edge", &State::cell_size_at_edge);
-      add("dissipated_energy", &State::dissipated_energy);
-      for (std::size_t k = 0; k < first.vectors.size(); ++k)
-        add_vector(first.vectors[k].first,
-                   [k](const State &state) { return state.vectors[k].second; });
-    }
+      }
+    };
 
 
 
@@ -97,28 +87,26 @@ namespace Debond
     write_load_path(const std::vector<LoadPathStep<dim>> &steps,
                     const std::string                    &file_name)
     {
-      using Step = LoadPathStep<dim>;
-      const LoadPathState<dim> first =
-        steps.empty() ? LoadPathState<dim>() : steps[0].state;
-      CsvTable   table;
-      const auto add = [&](const std::string &title, const auto &value) {
-        table.add(title, steps, value);
-      };
-      add("step", &Step::step);
-      add("factor", &Step::factor);
-      add("displacement_factor", &Step::displacement_factor);
-      add("status", &Step::status);
-      add_states(
-        steps, first, "", [](const Step &step) { return &step.state; }, table);
-      add("iterations", &Step::iterations);
-      add("change_factor", &Step::change_factor);
-      add_states(
-        steps,
-        first,
-        "global_",
-        [](const Step &step) { return step.global ? &*step.global : nullptr; },
-        table);
-      add("global_relative_gap", &Step::relative_gap);
+      CsvTable table;
+      for (const LoadPathStep<dim> &step : steps)
+        {
+          Row row;
+          row.add("step", step.step);
+          row.add("factor", step.factor);
+          row.add("displacement_factor", step.displacement_factor);
+          row.add("status", step.status);
+          row.add("", step.state);
+          row.add("iterations", step.iterations);
+          row.add("change_factor", step.change_factor);
+          // Without a global branch its columns are those of the step.
+          const std::size_t n = row.cells.size();
+          row.add("global_", step.global ? *step.global : step.state);
+          if (!step.global)
+            for (std::size_t k = n; k < row.cells.size(); ++k)
+              row.cells[k].second.clear();
+          row.add("global_relative_gap", step.relative_gap);
+          table.add_row(row.cells);
+        }
       table.write(file_name);
     }
   } // namespace

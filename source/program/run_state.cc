@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 6, checksum " +
+      return "Debond run state 7, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -71,15 +71,9 @@ namespace Debond
     void
     exchange(Archive &archive, LoadPathState<dim> &state)
     {
-      archive &state.minimum &state.functional &state.elastic_energy &state
-        .adhesion_energy &state.unit_load_work &state
-        .unit_displacement_work &state.contact_part &state.bonded_part &state
-        .broken_part &state.other_parts &state.mean_gap &state
-        .largest_gap &state.normal_force &state.contact_reaction &state
-        .clamped_reaction &state.law_violation &state
-        .equilibrium_residual &state.force_imbalance &state.broken_zone &state
-        .fronts &state.cell_size_at_edge &state.dissipated_energy &state
-        .vectors;
+      LoadPathState<dim>::for_each_number(
+        state,
+        [&archive](const std::string &, auto &number) { archive &number; });
     }
 
 

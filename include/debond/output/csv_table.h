@@ -38,6 +38,20 @@ namespace Debond
       rows.back().resize(rows[0].size());
     }
 
+    /// A cell with the title of its column.
+    using Cell = std::pair<std::string, std::string>;
+
+    template <typename T>
+    static Cell
+    titled(const std::string &title, const T &value)
+    {
+      return {title, cell(value)};
+    }
+
+    /// Adds a row. All rows have the same titles, in the same order.
+    void
+    add_row(const std::vector<Cell> &cells);
+
     /// Writes the file. Throws std::runtime_error naming it if it cannot be
     /// written.
     void

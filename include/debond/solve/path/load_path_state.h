@@ -64,6 +64,38 @@ namespace Debond
 
     /// By the titles of their columns, without the axis.
     ProbeValues<dim> vectors;
+
+    /// Calls @p action with the title of the column and the number for all of
+    /// the above, in the order of columns. Files of a path and of its restart
+    /// have what is listed here. The titles of lists are in them.
+    template <typename State, typename Action>
+    static void
+    for_each_number(State &state, const Action &action)
+    {
+      action("minimum", state.minimum);
+      action("J", state.functional);
+      action("elastic_energy", state.elastic_energy);
+      action("adhesion_energy", state.adhesion_energy);
+      action("unit_load_work", state.unit_load_work);
+      action("unit_displacement_work", state.unit_displacement_work);
+      action("contact_part", state.contact_part);
+      action("bonded_part", state.bonded_part);
+      action("broken_part", state.broken_part);
+      action("mean_gap", state.mean_gap);
+      action("largest_gap", state.largest_gap);
+      action("normal_force", state.normal_force);
+      action("contact_reaction", state.contact_reaction);
+      action("clamped_reaction", state.clamped_reaction);
+      action("law_violation", state.law_violation);
+      action("equilibrium_residual", state.equilibrium_residual);
+      action("force_imbalance", state.force_imbalance);
+      action("_part", state.other_parts);
+      action("broken_zone", state.broken_zone);
+      action("fronts", state.fronts);
+      action("cell_size_at_edge", state.cell_size_at_edge);
+      action("dissipated_energy", state.dissipated_energy);
+      action("", state.vectors);
+    }
   };
 
   /// @p verification is that of @p u under @p factors times the loads. The
