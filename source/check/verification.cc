@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
 #include <debond/check/broken_zone.h>
-#include <debond/check/verification.h>
+#include <debond/check/force_balance.h>
+#include <debond/check/law_violation.h>
 #include <debond/contact/adhesion_sums.h>
 
 namespace Debond
 {
-  std::vector<std::string>
-  state_names(const AdhesiveLaw &law)
-  {
-    std::vector<std::string> names = {"broken but closed",
-                                      "contact",
-                                      "bonded",
-                                      "kink",
-                                      "broken",
-                                      "free",
-                                      "held"};
-    for (unsigned int k = 0; k < law.pieces().size(); ++k)
-      if (std::find(names.begin(), names.end(), law.name(k)) == names.end())
-        names.push_back(law.name(k));
-    return names;
-  }
-
-
-
   template <int dim>
   double
   Verification<dim>::error() const
@@ -86,95 +69,13 @@ namespace Debond
   const std::string &
   Verification<dim>::name(const BondState state) const
   {
-    return state_names[static_cast<int>(state) + 1];
+    return state_names[index_of(state)];
   }
 
 
 
   namespace
   {
-    /// The displacement at which bonds first change their branch, as a positive
-    /// length; zero if they never do.
-    double
-    first_threshold(const AdhesiveLaw &law)
-    {
-      return law.pieces().size() > 1 ? -law.pieces()[1].upper : 0.;
-    }
-
-
-
-    /// L_i and F_i of Verification::law_violation, with which the displacement
-    /// and the force of a node are compared.
-    struct LawScale
-    {
-      double length;
-      double force;
-
-      /// What rounding of forces is of the displacement.
-      double rounding = 0.;
-    };
-
-
-
-    /// The scales of each unknown of the contact boundary. @p forces: along
-    /// them; @p resolved: the least force that is, of each; @p largest:
-    /// displacement of the body and force of a support.
-    template <int dim>
-    std::vector<LawScale>
-    law_scales(const AdhesionIntegral<dim> &adhesion,
-               const ContactBoundary<dim>  &boundary,
-               const VectorView            &forces,
-               const VectorView            &resolved,
-               const LawScale              &largest)
-    {
-      const AdhesiveLaw &law = adhesion.adhesive_law();
-      const double       largest_force =
-        std::max(Tolerance::contact_force * largest.force,
-                 forces.size() == 0 ? 0. : forces.lpNorm<Eigen::Infinity>());
-
-      // Of vertices that are held along the normal too, which are no nodes.
-      std::vector<LawScale> scales;
-      for (const double least : resolved)
-        scales.push_back({largest.length, std::max(largest_force, least)});
-      const auto set = [&](const unsigned int i,
-                           const BondScale   &bonds,
-                           const double       measure) {
-        const double threshold = first_threshold(law) * bonds.stretch;
-        const double strength =
-          law.bond_strength() * bonds.energy / bonds.stretch * measure;
-        const bool has_bonds = threshold > 0. && strength > 0.;
-        LawScale  &scale     = scales[i];
-        if (has_bonds)
-          scale.force = std::min(scale.force, strength);
-        scale.force = std::max(scale.force, resolved(i));
-        if (has_bonds)
-          scale.length =
-            std::min(scale.length,
-                     threshold * std::min(1., scale.force / strength));
-      };
-      for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
-        {
-          const auto     &node  = boundary.nodes[i];
-          const BondScale bonds = adhesion.points().bonds_at(i);
-          set(i, bonds, node.measure);
-          // In shear the same opening is a larger or a smaller displacement,
-          // and it is another one of bonds that break separately.
-          BondScale shear = bonds;
-          if (bonds.shear_energy > 0.)
-            shear = bonds.in_shear();
-          else if (bonds.shear > 0.)
-            shear.stretch /= std::sqrt(bonds.shear);
-          for (const auto &tangent : node.tangents)
-            if (!tangent.is_held)
-              set(tangent.index,
-                  bonds.shear > 0. ? shear : BondScale{0., 1.},
-                  node.measure);
-        }
-      return scales;
-    }
-
-
-
     /// Sets the state of node @p i from its displacement and force. @p
     /// largest_s: of all nodes.
     template <int dim>
@@ -192,10 +93,7 @@ namespace Debond
       const unsigned int     least_piece = adhesion.least_piece(i);
       ContactNodeState      &node        = result.nodes[i];
       const auto             state_of    = [&](const unsigned int piece) {
-        return static_cast<BondState>(std::find(result.state_names.begin(),
-                                                result.state_names.end(),
-                                                law.name(piece)) -
-                                      result.state_names.begin() - 1);
+        return state_named(law.name(piece), result.state_names);
       };
       node.branch =
         bonds.energy == 0. ?
@@ -266,91 +164,6 @@ namespace Debond
              bonds.shear * node.bond_stiffness * (1. - node.shear_damage) :
              0.) *
             slip));
-    }
-
-
-
-    /// The distance of a force to the allowed ones.
-    double
-    distance(const double force, const Interval &allowed)
-    {
-      return std::max({0., allowed.lower - force, force - allowed.upper});
-    }
-
-
-
-    Interval
-    unbounded_above_if(const bool contact, const Interval &interval)
-    {
-      return {interval.lower,
-              contact ? std::numeric_limits<double>::infinity() :
-                        interval.upper};
-    }
-
-
-
-    /**
-     * The distances of Verification::law_violation, one for each unknown of the
-     * contact boundary, of which those from @p n_nodes on have no bound. A
-     * larger delta allows more, so that bisection finds the least one. It
-     * bisects the exponent, because a node next to a jump of the law is close
-     * to the graph, however far its force is from what is allowed at its
-     * very displacement.
-     */
-    template <int dim>
-    std::vector<double>
-    violations(const AdhesionIntegral<dim> &adhesion,
-               const VectorView            &s,
-               const VectorView            &forces,
-               const std::vector<LawScale> &scales)
-    {
-      const unsigned int          n       = adhesion.n_unknowns();
-      const unsigned int          n_nodes = adhesion.n_nodes();
-      const std::vector<Interval> at_s    = adhesion.force_intervals(s, 0.);
-
-      // What is needed at fixed displacements is enough. It is exactly zero
-      // for a node on the graph.
-      std::vector<double> lower(n, 0.);
-      std::vector<double> upper(n, 0.);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          const double force_distance =
-            distance(forces(i),
-                     unbounded_above_if(i < n_nodes && s(i) >= 0., at_s[i]));
-          if (force_distance > 0.)
-            upper[i] = force_distance / scales[i].force;
-          if (i < n_nodes && s(i) > 0.)
-            upper[i] = std::max(upper[i], s(i) / scales[i].length);
-          if (upper[i] > 0.)
-            lower[i] = std::numeric_limits<double>::min();
-        }
-
-      // The exponents of double are 2^11, its mantissa has 2^53 values.
-      std::vector<double> delta(n);
-      std::vector<double> radius(n);
-      for (unsigned int step = 0; step < 11 + 53; ++step)
-        {
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              delta[i]  = std::sqrt(lower[i]) * std::sqrt(upper[i]);
-              radius[i] = delta[i] * scales[i].length;
-            }
-          const std::vector<Interval> intervals =
-            adhesion.force_intervals(s, radius);
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              const bool     is_bounded = i < n_nodes;
-              const Interval allowed =
-                unbounded_above_if(is_bounded && s(i) >= -radius[i],
-                                   intervals[i]);
-              const bool enough =
-                (!is_bounded || s(i) <= radius[i]) &&
-                distance(forces(i), allowed) <= delta[i] * scales[i].force;
-              (enough ? upper : lower)[i] = delta[i];
-            }
-        }
-
-      return upper;
     }
 
 
@@ -443,174 +256,6 @@ namespace Debond
 
 
 
-    /// The vectors of the contact nodes among those of all nodes. The unknowns
-    /// of a node follow each other.
-    template <int dim, typename Dofs>
-    std::vector<dealii::Tensor<1, dim>>
-    at_contact_nodes(const DofVector &vectors, const Dofs &normals)
-    {
-      std::vector<dealii::Tensor<1, dim>> result;
-      for (const auto normal : normals)
-        {
-          result.emplace_back();
-          for (unsigned int d = 0; d < dim; ++d)
-            result.back()[d] = vectors(normal / dim * dim + d);
-        }
-      return result;
-    }
-
-
-
-    template <int dim>
-    dealii::Tensor<1, dim>
-    resultant(const DofVector &forces)
-    {
-      dealii::Tensor<1, dim> sum;
-      for (unsigned int i = 0; i < forces.size(); ++i)
-        sum[i % dim] += forces(i);
-      return sum;
-    }
-
-
-
-    /// Sets the reaction of each support by its name. @p clamped: A u - f where
-    /// supports exert it.
-    template <int dim>
-    void
-    set_reactions(const ElasticUnknowns<dim> &unknowns,
-                  const DofVector            &clamped,
-                  Verification<dim>          &result)
-    {
-      const std::vector<std::string> &names = unknowns.support_names();
-      for (const std::string &name : names)
-        result.reactions[name];
-      std::map<unsigned int, unsigned int> of_node;
-      for (const auto &[dof, support] : unknowns.supported())
-        of_node[static_cast<unsigned int>(dof / dim)] = support;
-      for (const auto &[dof, support] : unknowns.supported())
-        {
-          dealii::Tensor<1, dim> force;
-          force[dof % dim] = clamped(dof);
-          // What holds a jump acts on both nodes, which two supports may hold.
-          for (const BasisStep step : {BasisStep::frames, BasisStep::jumps})
-            if (const auto *row =
-                  unknowns.basis().find(step,
-                                        static_cast<unsigned int>(dof / dim)))
-              {
-                force = force * row->to_unknowns;
-                // The axis holds nodes without being a support.
-                for (const auto &[other, weight] : row->others)
-                  if (const auto held = of_node.find(other);
-                      held != of_node.end())
-                    result.reactions[names[held->second]] -= weight * force;
-              }
-          result.reactions[names[support]] += force;
-        }
-    }
-
-
-
-    /// Bonds of vertices that a support moves pull at it with @p held_forces.
-    template <int dim>
-    void
-    add_held_forces(const ElasticUnknowns<dim> &unknowns,
-                    const std::vector<double>  &held_forces,
-                    Verification<dim>          &result)
-    {
-      const std::vector<std::string> &names = unknowns.support_names();
-      const auto &held = unknowns.contact().boundary().held_vertices;
-      for (unsigned int k = 0; k < held.size(); ++k)
-        {
-          const dealii::Tensor<1, dim> force = held_forces[k] * held[k].normal;
-          result.contact_reaction -= force;
-          if (held[k].is_tangential)
-            result.tangential_reaction -= force;
-          if (held[k].low_support < names.size())
-            result.reactions[names[held[k].low_support]] -= force;
-          else
-            result.clamped_reaction += force;
-          if (held[k].support < names.size())
-            result.reactions[names[held[k].support]] += force;
-        }
-    }
-
-
-
-    /// @p residual: A u - f; @p resolved: the least sum of forces' sizes that
-    /// rounding leaves; @p held_forces: of the bonds at vertices that are held.
-    template <int dim>
-    void
-    compute_force_balance(const ElasticProblem<dim> &problem,
-                          const DofVector           &residual,
-                          const LoadFactors          factors,
-                          const double               resolved,
-                          const std::vector<double> &held_forces,
-                          Verification<dim>         &result)
-    {
-      // What the supports and the foundation exert is the residual at their
-      // degrees of freedom; what is held there and by no support is held by the
-      // foundation.
-      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-      const auto                 &normals  = unknowns.contact().normal_dofs();
-      DofVector                   clamped(unknowns.n_dofs());
-      DofVector                   tangential(unknowns.n_dofs());
-      for (const auto &line : unknowns.constraints().get_lines())
-        if (unknowns.on_axis().count(line.index / dim) == 0)
-          tangential(line.index) = residual(line.index);
-      for (const auto &[dof, unused] : unknowns.supported())
-        {
-          clamped(dof)    = residual(dof);
-          tangential(dof) = 0.;
-        }
-      const auto &dofs = unknowns.contact().dofs();
-      for (std::size_t i = normals.size(); i < dofs.size(); ++i)
-        tangential(dofs[i]) = residual(dofs[i]);
-      DofVector contact = tangential;
-      for (const auto normal : normals)
-        contact(normal) = residual(normal);
-
-      const DofVector applied = problem.fields().applied_nodal_forces(factors);
-      result.applied_force    = resultant<dim>(applied);
-      result.clamped_reaction =
-        resultant<dim>(unknowns.cartesian_forces(clamped));
-      result.contact_reaction =
-        resultant<dim>(unknowns.contact_forces(contact));
-      tangential                 = unknowns.contact_forces(tangential);
-      result.tangential_reaction = resultant<dim>(tangential);
-      result.tangential_forces   = at_contact_nodes<dim>(tangential, normals);
-      set_reactions(unknowns, clamped, result);
-      add_held_forces(unknowns, held_forces, result);
-      const auto &nodes = unknowns.contact().boundary().nodes;
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        for (const auto &tangent : nodes[i].tangents)
-          if (tangent.is_held)
-            result.tangential_forces[i] -=
-              held_forces[tangent.index] * tangent.direction;
-
-      // Resultants can vanish where forces do not.
-      DofVector all = clamped;
-      all += contact;
-      const double scale = all.l1_norm() + applied.l1_norm();
-      // Each body is in balance by itself.
-      all = unknowns.cartesian_forces(all);
-      all += applied;
-      std::vector<dealii::Tensor<1, dim>> sums(unknowns.n_bodies());
-      for (unsigned int i = 0; i < all.size(); ++i)
-        sums[unknowns.body_of(i / dim)][i % dim] += all(i);
-      double imbalance = 0.;
-      for (dealii::Tensor<1, dim> &sum : sums)
-        {
-          // Away from an axis hoop stresses hold what loads do not.
-          if (unknowns.symmetry() == Symmetry::axis)
-            sum[0] = 0.;
-          imbalance = std::max(imbalance, sum.norm());
-        }
-      result.force_imbalance =
-        imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
-    }
-
-
-
     /// What the displacements of contact nodes, @p displacement being w + G, or
     /// the jumps of glued ones are along the boundary.
     template <int dim>
@@ -619,10 +264,8 @@ namespace Debond
              const DofVector            &displacement)
     {
       const auto &nodes = unknowns.contact().boundary().nodes;
-      std::vector<dealii::Tensor<1, dim>> slips =
-        at_contact_nodes<dim>(unknowns.basis().to_nodal(displacement,
-                                                        BasisStep::frames),
-                              unknowns.contact().normal_dofs());
+      std::vector<dealii::Tensor<1, dim>> slips = at_contact_nodes(
+        unknowns.basis().to_nodal(displacement, BasisStep::frames), unknowns);
       for (unsigned int i = 0; i < slips.size(); ++i)
         slips[i] -= (slips[i] * nodes[i].normal) * nodes[i].normal;
       return slips;
@@ -684,7 +327,7 @@ namespace Debond
         if (pair.sign < 0.)
           for (unsigned int d = 0; d < dim; ++d)
             u(dim * pair.first + d) = u(dim * pair.second + d);
-      return at_contact_nodes<dim>(u, unknowns.contact().normal_dofs());
+      return at_contact_nodes(u, unknowns);
     }
 
 

@@ -255,7 +255,7 @@ namespace Debond
       std::vector<std::string> texts;
       for (unsigned int k = 0; k < verification.state_names.size(); ++k)
         {
-          const auto state = static_cast<BondState>(static_cast<int>(k) - 1);
+          const BondState    state = state_at(k);
           const unsigned int count = verification.count(state);
           if (state != BondState::held)
             states[verification.name(state)] = count;

@@ -2,32 +2,12 @@
 #ifndef debond_check_verification_h
 #define debond_check_verification_h
 
+#include <debond/check/bond_state.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
 namespace Debond
 {
-  /// The state of the bond and the foundation at a contact node, by its number
-  /// in files. Branches of a law that have other names than these have the
-  /// numbers that follow.
-  enum class BondState : int
-  {
-    broken_but_closed = -1, ///< s = 0, where bonds broke for good
-    contact,                ///< s = 0
-    bonded,
-    kink, ///< between two branches
-    broken,
-    free, ///< s < 0, where there is no adhesion
-    held  ///< a clamped vertex, which is no contact node
-  };
-
-  /// The names of all states that nodes can have with this law, by number, the
-  /// first of which is -1.
-  std::vector<std::string>
-  state_names(const AdhesiveLaw &law);
-
-
-
   /// The contact law checked at one contact node.
   struct ContactNodeState
   {

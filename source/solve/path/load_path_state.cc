@@ -101,9 +101,8 @@ namespace Debond
       double measure = 0.;
       // Columns have to be the same at all steps, so that states that the law
       // can have are listed even if no node is in them.
-      constexpr int n_known = static_cast<int>(BondState::held) + 1;
       state.other_parts.emplace_back(verification.name(BondState::free), 0.);
-      for (std::size_t k = n_known + 1; k < verification.state_names.size();
+      for (std::size_t k = first_of_law; k < verification.state_names.size();
            ++k)
         state.other_parts.emplace_back(as_title(verification.state_names[k]),
                                        0.);
@@ -121,7 +120,7 @@ namespace Debond
                        state.broken_part :
                        state.other_parts[0].second;
             default:
-              return state.other_parts[static_cast<int>(branch) - n_known + 1]
+              return state.other_parts[index_of(branch) - first_of_law + 1]
                 .second;
           }
       };
