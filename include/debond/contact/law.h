@@ -144,8 +144,11 @@ namespace Debond
     /// does not: `pieces` have 1 in their place.
     std::string stiffness = {}, threshold = {};
 
-    /// The entry that `stiffness` is from. In laws that are not winkler_law()
-    /// it is a factor of all their pieces.
+    /// True if bonds are given by stiffness and threshold themselves, as in
+    /// winkler_law(); otherwise `stiffness` is a factor of all pieces.
+    bool is_by_stiffness = false;
+
+    /// The entry that `stiffness` is from.
     std::string stiffness_entry = "Contact law/Bond stiffness";
 
     /// The bonds of one boundary, numbers or expressions.

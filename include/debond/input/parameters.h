@@ -79,7 +79,7 @@ namespace Debond
     Parameters                         p;
     BodyParameters                     body;
     std::map<std::string, std::string> constants, parts; ///< texts by name
-    std::set<std::string>              idle_constants;   ///< that no entry uses
+    std::set<std::string>              unused_constants;
     LawSection                         laws;
   };
 

@@ -326,8 +326,10 @@ namespace Debond
           // Those for all boundaries come first, as boundaries take from them
           // what they do not say themselves.
           complete("", entries->everywhere, all);
-          const auto boundaries = bonds_of_boundaries(*entries, all);
-          return law_of(entries->everywhere, boundaries);
+          const auto           boundaries = bonds_of_boundaries(*entries, all);
+          ContactLawParameters law = law_of(entries->everywhere, boundaries);
+          law.is_by_stiffness      = true;
+          return law;
         };
       },
       join({paths.begin(), paths.end()}, ", ")};

@@ -2,6 +2,7 @@
 
 #include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
+#include <debond/input/contact_parameters.h>
 #include <debond/mesh/field_value.h>
 #include <debond/solve/scene/scene_conditions.h>
 
@@ -107,7 +108,7 @@ namespace Debond
                              " could go through each other: it has to have " +
                              name +
                              ", which is both sides; bonds are left out by " +
-                             (given.law.name == "winkler" ?
+                             (given.law.is_by_stiffness ?
                                 "Bond stiffness " + name + " = 0" :
                                 "a Traction factor that is 0 there"));
         insert(boundaries.at(name + "_high"), conditions.high_sides);
@@ -130,11 +131,8 @@ namespace Debond
       entries_of("Contact law/Tangential displacement", own),
       conditions,
       [&](const std::string &name, const dealii::types::boundary_id id) {
-        const std::string &word = own.at(name);
         conditions.own_tangential_displacements[id] =
-          word == "fixed" ? TangentialDisplacement::fixed :
-          word == "free"  ? TangentialDisplacement::free :
-                            or_free(TangentialDisplacement::bonded);
+          or_free(tangential_named(own.at(name)));
       });
     return conditions;
   }
@@ -260,7 +258,7 @@ namespace Debond
     // other than the paper's the traction factor takes the place of the
     // stiffness.
     ShearBonds shear;
-    shear.is_relative = given.law.name != "winkler";
+    shear.is_relative = !given.law.is_by_stiffness;
     for (const dealii::types::boundary_id id : conditions.contact)
       if (conditions.tangential(id) == TangentialDisplacement::bonded)
         shear.boundaries.insert(id);

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/input/mesh_parameters.h>
+#include <debond/input/probe_parameters.h>
+#include <debond/input/scene_checks.h>
+
+#include <boost/algorithm/string/predicate.hpp>
+
+namespace Debond
+{
+  namespace
+  {
+    void
+    check_boundaries(Parameters &p, ParameterTable &table)
+    {
+      const std::string clamped = "Boundary conditions/Clamped boundaries";
+      const std::string contact = "Boundary conditions/Contact boundary";
+      // Without a body there is an error already.
+      if (p.body)
+        {
+          const std::set<std::string> known = p.body->boundaries();
+          join_names(table.get(clamped), known, p.clamped_boundaries);
+          join_names(table.get(contact), known, p.contact_boundaries);
+          join_names(table.get("Boundary conditions/Roller boundaries"),
+                     known,
+                     p.supports.rollers);
+          check_names(clamped, p.clamped_boundaries, *p.body, table);
+          check_names(contact, p.contact_boundaries, *p.body, table);
+          for (const SurfaceLoad &load : p.loads.on_boundaries())
+            check_names(load.entry(), {load.boundary}, *p.body, table);
+        }
+
+      for (const std::string &side : p.contact_boundaries)
+        if (p.clamped_boundaries.count(side) > 0)
+          table.reject(contact,
+                       "the side " + side +
+                         " is clamped already, by Clamped boundaries",
+                       {clamped});
+    }
+
+
+
+    /// Entries that cannot be together with what @p others say, and why.
+    using Refusals = std::vector<std::tuple<bool, std::string, std::string>>;
+
+    void
+    refuse(const Refusals                 &refusals,
+           const std::vector<std::string> &others,
+           ParameterTable                 &table)
+    {
+      for (const auto &[is_set, entry, reason] : refusals)
+        if (is_set)
+          table.reject(entry, reason, others);
+    }
+
+
+
+    /// Refuses entries that cannot be together with quadratic displacements.
+    void
+    check_degree(const Parameters &p, ParameterTable &table)
+    {
+      if (p.degree == 1)
+        return;
+      using Rule = ContactQuadratureParameters::Rule;
+      const std::string no_bonds =
+        "needs a bond for each node, which Mesh/Degree = 2 has not";
+      refuse({{p.quadrature.rule != Rule::gauss,
+               "Contact law/Quadrature",
+               "Mesh/Degree = 2 needs gauss N, N from 1 to " +
+                 std::string(p.dimension == 2 ? "99" : "7")},
+              {p.solver.prove, "Solver/Prove", no_bonds},
+              {p.load_path.arc, "Load path/Arc", no_bonds}},
+             {"Mesh/Degree"},
+             table);
+    }
+
+
+
+    /// Refuses entries that are for bonds that break at once.
+    void
+    check_softening(const Parameters &p, ParameterTable &table)
+    {
+      const bool gains =
+        std::any_of(p.law.pieces.begin(),
+                    p.law.pieces.end(),
+                    [](const EnergyPiece &piece) { return piece.slope > 0.; });
+      if (gains && !p.load_path.bonds_heal)
+        table.reject("Load path/Bonds heal",
+                     "false needs tractions that never rise more than in "
+                     "proportion to the opening: bonds that close along the "
+                     "secant would give back more than they took",
+                     {"Contact law/Law"});
+      if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
+        return;
+      const std::string quadratic =
+        "needs a law of straight lines, not Law = exponential";
+      const bool decays =
+        !AdhesiveLaw(p.law.pieces).pieces().is_piecewise_quadratic();
+      refuse(
+        {{p.solver.prove && decays, "Solver/Prove", quadratic},
+         {p.load_path.global_branch == GlobalBranch::prove && decays,
+          "Load path/Global branch",
+          quadratic},
+         {p.load_path.arc && decays, "Load path/Arc", quadratic},
+         {p.load_path.arc && !p.load_path.bonds_heal,
+          "Load path/Arc",
+          "needs Load path/Bonds heal = true with bonds that soften, as what "
+          "unloads does not come back on the same curve"}},
+        {"Contact law/Law"},
+        table);
+    }
+
+
+
+    /// Checks bonds that shear, and refuses what has no meaning with them.
+    void
+    check_shear(Parameters &p, ParameterTable &table)
+    {
+      const std::string tangential = "Contact law/Tangential displacement";
+      const std::string failure    = "Contact law/Bond failure";
+      const std::string energy     = "Contact law/Shear fracture energy";
+      const std::string mode       = "Contact law/Mixed mode";
+      p.shear.is_somewhere =
+        p.tangential_displacement == TangentialDisplacement::bonded;
+      for (const auto &[unused, word] : p.tangential_displacements)
+        p.shear.is_somewhere =
+          p.shear.is_somewhere ||
+          tangential_named(word) == TangentialDisplacement::bonded;
+      if (!p.shear.is_somewhere)
+        {
+          table.without_effect("Contact law/Bond shear stiffness, " + failure +
+                                 ", " + energy + ", " + mode,
+                               "bonds bear no shear",
+                               tangential);
+          return;
+        }
+      const bool has_mode =
+        p.shear.mixed_mode != ShearParameters::MixedMode::none;
+      if ((p.shear.breaks_separately || has_mode) == p.shear.energy.empty())
+        table.reject(energy,
+                     "goes with Bond failure = separate or a Mixed mode, which "
+                     "need it",
+                     {failure, mode});
+      if (p.law.pieces.empty())
+        return;
+      const PiecewiseEnergy pieces(p.law.pieces);
+      const bool            breaks_at_once =
+        pieces.size() == 1 || (pieces.size() == 2 && pieces[1].is_flat());
+      refuse(
+        {{pieces[0].slope != 0. ||
+            (pieces[0].curvature == 0. && pieces.size() > 1),
+          tangential,
+          "bonded needs bonds that are springs at first"},
+         {p.shear.breaks_separately && std::isinf(pieces.largest_value()),
+          failure,
+          "separate needs bonds that break"},
+         {has_mode && std::isinf(pieces.largest_value()),
+          mode,
+          "needs bonds that break"},
+         {has_mode && p.shear.breaks_separately,
+          mode,
+          "is for Bond failure = common"},
+         {has_mode && (p.load_path.factors.empty() || p.load_path.bonds_heal),
+          mode,
+          "has no energy to minimise but step by step: it needs a load "
+          "path with Bonds heal = false"},
+         {p.load_path.arc,
+          "Load path/Arc",
+          "needs bonds along the normal alone: in shear the path of a "
+          "bond has no corners, but is curved"},
+         {p.solver.prove && !breaks_at_once,
+          "Solver/Prove",
+          "needs Law = winkler where bonds shear"},
+         {p.load_path.global_branch == GlobalBranch::prove && !breaks_at_once,
+          "Load path/Global branch",
+          "needs Law = winkler where bonds shear, to prove it"}},
+        {tangential},
+        table);
+    }
+
+
+
+    void
+    check_exact_displacement(const Parameters &p, ParameterTable &table)
+    {
+      const std::string path = "Verification/Exact displacement";
+      check_expression(path,
+                       p.verification.exact_displacement,
+                       p.dimension,
+                       p.dimension,
+                       p.loads.constants,
+                       table);
+      if (!p.verification.exact_displacement.empty() &&
+          !p.load_path.factors.empty())
+        table.reject(path,
+                     "belongs to the given loads, not to those of a load path",
+                     {"Load path/Factors"});
+    }
+
+
+
+    /// Refuses entries that cannot be together with meshes that are refined.
+    void
+    check_accuracy(const Parameters &p, ParameterTable &table)
+    {
+      if (p.accuracy.is_adaptive() &&
+          p.solver.method == SolverMethod::euclidean_bundle)
+        table.reject("Solver/Method",
+                     "meshes that are refined need automatic, energy bundle or "
+                     "majorise minimise",
+                     {"Accuracy/Target", "Accuracy/Maximum unknowns"});
+    }
+  } // namespace
+
+
+
+  void
+  check_bonds(const Parameters &p, ParameterTable &table)
+  {
+    for (const auto &[path, unused] : table.locations())
+      for (const std::string name : {"Bond stiffness",
+                                     "Bond threshold",
+                                     "Bond strength",
+                                     "Fracture energy",
+                                     "Traction factor",
+                                     "Tangential displacement"})
+        if (const std::string entry = "Contact law/" + name;
+            boost::starts_with(path + ' ', entry + ' ') && table.is_set(path))
+          {
+            if (p.body && path != entry && !table.get(path).empty())
+              check_names(path,
+                          {path.substr(entry.size() + 1)},
+                          *p.body,
+                          table);
+            if (name != "Tangential displacement")
+              check_expression(path,
+                               table.get(path),
+                               p.dimension,
+                               1,
+                               p.loads.constants,
+                               table);
+          }
+    using Rule = ContactQuadratureParameters::Rule;
+    if (p.load_path.arc && p.degree == 1 && p.quadrature.rule != Rule::nodal)
+      table.reject("Load path/Arc",
+                   "needs Contact law/Quadrature = nodal, which gives each "
+                   "node a bond of its own",
+                   {"Contact law/Quadrature"});
+  }
+
+
+
+  void
+  check_symmetry(Parameters &p, ParameterTable &table)
+  {
+    if (p.symmetry == Symmetry::none)
+      return;
+    if (p.dimension != 2)
+      table.reject("Dimension", "Symmetry = axis needs 2", {"Symmetry"});
+    p.materials.everywhere.hypothesis = Material::Hypothesis::plane_strain;
+  }
+
+
+
+  void
+  check_scene(Parameters &p, ParameterTable &table)
+  {
+    check_solver(p.solver, table);
+    check_boundaries(p, table);
+    // Without a body there is an error already.
+    if (p.body)
+      {
+        check_supports(
+          p.supports, *p.body, p.dimension, p.loads.constants, table);
+        check_material(p.dimension, p.materials, p.body->regions(), table);
+        check_probes(p.probes,
+                     p.dimension,
+                     p.body->boundaries(),
+                     p.body->regions(),
+                     table);
+      }
+    check_degree(p, table);
+    check_softening(p, table);
+    check_shear(p, table);
+    check_exact_displacement(p, table);
+    check_accuracy(p, table);
+  }
+} // namespace Debond
