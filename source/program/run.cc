@@ -9,6 +9,7 @@
 #include <debond/program/run.h>
 #include <debond/program/run_output.h>
 #include <debond/solve/meshes/adaptive_loop.h>
+#include <debond/solve/meshes/first_scene.h>
 #include <debond/solve/minimum/displacement.h>
 #include <debond/solve/minimum/solve.h>
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
-#include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/minimum/lumped_bonds.h>
 #include <debond/solve/minimum/which_minimum.h>
-
-#include <numeric>
 
 namespace Debond
 {
@@ -23,120 +20,6 @@ namespace Debond
     /// The nodes of the coarsest space on which active sets of starts are
     /// guessed.
     constexpr unsigned int guess_nodes = 50;
-
-
-
-    /// The stretches of the bonds at the nodes, or on coarser spaces their
-    /// means; empty if all are the same.
-    template <int dim>
-    std::vector<double>
-    stretches(
-      const AdhesionIntegral<dim>                    &adhesion,
-      const std::vector<Eigen::SparseMatrix<double>> &prolongations = {})
-    {
-      if (!adhesion.points().has_field())
-        return {};
-      Eigen::VectorXd mean(adhesion.n_nodes());
-      for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
-        mean(i) = adhesion.points().bonds_at(i).stretch;
-      // A coarse bond stands for the fine ones below it; its stretch is their
-      // mean, weighted by the entries of P, which are not negative.
-      for (const Eigen::SparseMatrix<double> &P : prolongations)
-        mean = (P.transpose() * mean)
-                 .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
-                 .eval();
-      return {mean.data(), mean.data() + mean.size()};
-    }
-
-
-
-    /// The energy with a law of its own for each node, and where bonds shear
-    /// for the unknowns of each: what Phi is with bonds at nodes. Bonds of
-    /// shear alone follow those of the nodes, and are added to @p graph.
-    template <int dim>
-    SeparableEnergy
-    lumped_bonds(const AdhesionIntegral<dim> &adhesion, NeighbourGraph &graph)
-    {
-      const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
-      const Eigen::VectorXd  weights = lumped_weights(adhesion);
-      if (!adhesion.shears())
-        return lumped_energy(pieces, weights, stretches(adhesion));
-      const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
-      const unsigned int          n        = adhesion.n_nodes();
-      SeparableEnergy             result =
-        lumped_energy(pieces, weights.head(n), stretches(adhesion));
-      result.bonds.resize(weights.size());
-      std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
-      result.weights = Eigen::VectorXd::Ones(weights.size());
-      std::vector<unsigned int> shear_bonds(n, 0); // of nodes, 0 is none
-      const auto                add = [&](const auto      &vertex,
-                           const BondScale &bonds,
-                           const bool       has_own,
-                           unsigned int     bond) {
-        bool is_first = has_own;
-        for (const auto &tangent : vertex.tangents)
-          if (!tangent.is_held)
-            {
-              if (is_first)
-                {
-                  is_first = false;
-                  bond = static_cast<unsigned int>(result.f.size());
-                  result.f.push_back(
-                    pieces.scaled(weights(tangent.index) * bonds.stretch *
-                                    bonds.stretch / bonds.shear,
-                                  bonds.stretch));
-                  graph.emplace_back();
-                }
-              result.bonds[tangent.index] = bond;
-              // Without bonds any weight will do.
-              if (bonds.shear > 0.)
-                result.weights(tangent.index) = bonds.shear;
-            }
-        return bond;
-      };
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          const BondScale bonds     = adhesion.points().bonds_at(i);
-          const bool      separates = bonds.shear_energy > 0.;
-          shear_bonds[i]            = add(boundary.nodes[i],
-                               separates ? bonds.in_shear() : bonds,
-                               separates,
-                               i);
-        }
-      for (unsigned int i = 0; i < n; ++i)
-        if (shear_bonds[i] >= n)
-          for (const unsigned int j : graph[i])
-            if (shear_bonds[j] >= n)
-              graph[shear_bonds[i]].insert(shear_bonds[j]);
-      for (const auto &vertex : boundary.held_vertices)
-        if (!vertex.tangents.empty())
-          {
-            BondScale bonds =
-              adhesion.points().bonds_at(vertex.position, vertex.boundary);
-            if (bonds.shear_energy > 0.)
-              bonds = bonds.in_shear();
-            if (bonds.shear == 0.)
-              bonds.shear = 1.;
-            add(vertex, bonds, true, 0);
-          }
-      return result;
-    }
-
-
-
-    /// Returns whether a sum over nodes of the law at their unknowns is Phi.
-    template <int dim>
-    bool
-    is_sum_over_nodes(const AdhesionIntegral<dim> &adhesion)
-    {
-      return adhesion.points().is_nodal() &&
-             std::none_of(adhesion.points().list().begin(),
-                          adhesion.points().list().end(),
-                          [](const auto &point) {
-                            return point.shears() && (point.offset != 0. ||
-                                                      !point.held_slip.empty());
-                          });
-    }
 
 
 
@@ -430,7 +313,7 @@ namespace Debond
           const SeparableEnergy coarse_lumped =
             lumped_energy(adhesion.adhesive_law().pieces(),
                           weights,
-                          stretches(adhesion, prolongations));
+                          scales_of_bonds(adhesion, prolongations));
           const NeighbourGraph coarse_graph =
             coarse_neighbours(prolongations.back());
           add_search(
@@ -467,62 +350,6 @@ namespace Debond
       }
     };
   } // namespace
-
-
-
-  std::string
-  to_string(const MinimumKind kind)
-  {
-    static const std::array<const char *, 4> words = {
-      {"stationary", "local minimum", "best known", "global"}};
-    return words[static_cast<std::size_t>(kind)];
-  }
-
-
-
-  template <int dim>
-  MinimumKind
-  kind_without_search(const AdhesionIntegral<dim> &adhesion,
-                      const VectorView            &s,
-                      const Condensation          *condensed)
-  {
-    if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
-      return MinimumKind::global;
-    // With an energy that depends on the mode there is no J that it would be a
-    // minimum of.
-    if (adhesion.points().toughness_by_mode() != nullptr)
-      return MinimumKind::stationary;
-    // At a drop of the traction J has a concave kink, from which one of the two
-    // directions descends. So close to it rounding decides on which side a bond
-    // is, and nothing is claimed.
-    if (is_at_drop(adhesion, s, Tolerance::at_kink))
-      return MinimumKind::stationary;
-    // Away from kinks J is a convex quadratic on s <= 0: it rises around the
-    // point.
-    if (!adhesion.softens())
-      return MinimumKind::local_minimum;
-    // Where bonds soften, Phi'' is negative, and only S can tell whether it
-    // outweighs that.
-    if (condensed == nullptr)
-      return MinimumKind::stationary;
-    // The second-order condition: S + Phi'' is positive definite on the s_i
-    // that are free, with the smaller Phi'' where a bond is next to a kink.
-    // Nodes at s = 0 under pressure cannot move to first order; those that only
-    // touch the foundation can, and are free too.
-    const Eigen::MatrixXd S = condensed->schur_complement();
-    const Eigen::VectorXd pressure =
-      condensed->load() - S * s - adhesion.subgradient(s);
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (s(i) < 0. || pressure(i) <= Tolerance::at_kink *
-                                        condensed->load().cwiseAbs().maxCoeff())
-        free.push_back(i);
-    Eigen::MatrixXd A = S;
-    A += least_second_derivative(adhesion, s, Tolerance::at_kink);
-    return is_safely_positive_definite(A(free, free)) ?
-             MinimumKind::local_minimum :
-             MinimumKind::stationary;
-  }
 
 
 
@@ -595,6 +422,5 @@ namespace Debond
 
 
 
-  DEBOND_INSTANTIATE(kind_without_search);
   DEBOND_INSTANTIATE(find_better_minimum);
 } // namespace Debond

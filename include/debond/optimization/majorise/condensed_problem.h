@@ -73,6 +73,8 @@ namespace Debond
     minimise(const double tolerance) override;
 
   private:
+    // fall_of_softening_bonds.cc
+
     /// Moves s, to which a majorant has led from @p before, to where J stops
     /// falling on a line. Where Phi softens majorants are too stiff to come
     /// far, and where J is not convex they crawl. The line is a Newton step for
@@ -87,20 +89,7 @@ namespace Debond
     void
     fall_along(const Eigen::VectorXd &ds);
 
-    Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
-
-    /// S without what rounding leaves along N, if there is N.
-    const Eigen::MatrixXd     S_of_loose;
-    const MatrixView          S;
-    const double              stiffness;
-    const VectorView          g;
-    const Eigen::VectorXd     upper;
-    const PiecewiseQuadratic &phi;
-    Eigen::VectorXd          &s;
-
-    /// The stiffness by which the majorant's bonds hold a rigid motion at most
-    /// as rounding does.
-    double loose_stiffness = 0.;
+    // loose_motions.cc
 
     /// Orthonormal motions of N that the majorant's bonds hold by at most
     /// @p most, the least held one first.
@@ -145,6 +134,21 @@ namespace Debond
                 const Eigen::VectorXd &step,
                 const Eigen::VectorXd &last_step,
                 Eigen::VectorXd       &x) const;
+
+    Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
+
+    /// S without what rounding leaves along N, if there is N.
+    const Eigen::MatrixXd     S_of_loose;
+    const MatrixView          S;
+    const double              stiffness;
+    const VectorView          g;
+    const Eigen::VectorXd     upper;
+    const PiecewiseQuadratic &phi;
+    Eigen::VectorXd          &s;
+
+    /// The stiffness by which the majorant's bonds hold a rigid motion at most
+    /// as rounding does.
+    double loose_stiffness = 0.;
 
     /// The majorant of J, 1/2 s'M s - r's + const, M = S + E and r = g + b with
     /// that of Phi.

@@ -24,18 +24,6 @@ namespace Debond
 
 
 
-  /// The scene on the first mesh, which can be refined if @p accuracy asks for
-  /// it, with @p start as of Scene, or after the @p divisions of an earlier
-  /// run. Throws as Scene does, and BadInput if the mesh cannot be refined or
-  /// is not that of the divisions.
-  template <int dim>
-  std::shared_ptr<const Scene<dim>>
-  make_first_scene(
-    const ProblemParameters                      &problem,
-    const AccuracyParameters                     &accuracy,
-    const std::string                            &start     = "",
-    const std::vector<std::vector<unsigned int>> &divisions = {});
-
   /// Solves the scene of make_first_scene(), which @p begun has, and again and
   /// again on a mesh that is refined where the estimate is large, or what @p
   /// goal says, from the state before; with the search that the scene wants on

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/instantiate.h>
+#include <debond/contact/adhesion_sums.h>
+#include <debond/solve/minimum/lumped_bonds.h>
+
+#include <numeric>
+
+namespace Debond
+{
+  template <int dim>
+  std::vector<double>
+  scales_of_bonds(const AdhesionIntegral<dim>                    &adhesion,
+                  const std::vector<Eigen::SparseMatrix<double>> &prolongations)
+  {
+    if (!adhesion.points().has_field())
+      return {};
+    Eigen::VectorXd mean(adhesion.n_nodes());
+    for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
+      mean(i) = adhesion.points().bonds_at(i).stretch;
+    // A coarse bond stands for the fine ones below it; its stretch is their
+    // mean, weighted by the entries of P, which are not negative.
+    for (const Eigen::SparseMatrix<double> &P : prolongations)
+      mean = (P.transpose() * mean)
+               .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
+               .eval();
+    return {mean.data(), mean.data() + mean.size()};
+  }
+
+
+
+  template <int dim>
+  SeparableEnergy
+  lumped_bonds(const AdhesionIntegral<dim> &adhesion, NeighbourGraph &graph)
+  {
+    const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
+    const Eigen::VectorXd  weights = lumped_weights(adhesion);
+    if (!adhesion.shears())
+      return lumped_energy(pieces, weights, scales_of_bonds(adhesion));
+    const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
+    const unsigned int          n        = adhesion.n_nodes();
+    SeparableEnergy             result =
+      lumped_energy(pieces, weights.head(n), scales_of_bonds(adhesion));
+    result.bonds.resize(weights.size());
+    std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
+    result.weights = Eigen::VectorXd::Ones(weights.size());
+    std::vector<unsigned int> shear_bonds(n, 0); // of nodes, 0 is none
+    const auto                add = [&](const auto      &vertex,
+                         const BondScale &bonds,
+                         const bool       has_own,
+                         unsigned int     bond) {
+      bool is_first = has_own;
+      for (const auto &tangent : vertex.tangents)
+        if (!tangent.is_held)
+          {
+            if (is_first)
+              {
+                is_first = false;
+                bond = static_cast<unsigned int>(result.f.size());
+                result.f.push_back(
+                  pieces.scaled(weights(tangent.index) * bonds.stretch *
+                                  bonds.stretch / bonds.shear,
+                                bonds.stretch));
+                graph.emplace_back();
+              }
+            result.bonds[tangent.index] = bond;
+            // Without bonds any weight will do.
+            if (bonds.shear > 0.)
+              result.weights(tangent.index) = bonds.shear;
+          }
+      return bond;
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const BondScale bonds     = adhesion.points().bonds_at(i);
+        const bool      separates = bonds.shear_energy > 0.;
+        shear_bonds[i]            = add(boundary.nodes[i],
+                             separates ? bonds.in_shear() : bonds,
+                             separates,
+                             i);
+      }
+    for (unsigned int i = 0; i < n; ++i)
+      if (shear_bonds[i] >= n)
+        for (const unsigned int j : graph[i])
+          if (shear_bonds[j] >= n)
+            graph[shear_bonds[i]].insert(shear_bonds[j]);
+    for (const auto &vertex : boundary.held_vertices)
+      if (!vertex.tangents.empty())
+        {
+          BondScale bonds =
+            adhesion.points().bonds_at(vertex.position, vertex.boundary);
+          if (bonds.shear_energy > 0.)
+            bonds = bonds.in_shear();
+          if (bonds.shear == 0.)
+            bonds.shear = 1.;
+          add(vertex, bonds, true, 0);
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  is_sum_over_nodes(const AdhesionIntegral<dim> &adhesion)
+  {
+    return adhesion.points().is_nodal() &&
+           std::none_of(adhesion.points().list().begin(),
+                        adhesion.points().list().end(),
+                        [](const auto &point) {
+                          return point.shears() && (point.offset != 0. ||
+                                                    !point.held_slip.empty());
+                        });
+  }
+
+
+
+  DEBOND_INSTANTIATE(scales_of_bonds);
+  DEBOND_INSTANTIATE(lumped_bonds);
+  DEBOND_INSTANTIATE(is_sum_over_nodes);
+} // namespace Debond
