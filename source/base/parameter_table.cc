@@ -297,6 +297,61 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// The lines of a scene as they are meant: without comments, and joined if
+    /// a backslash continues them.
+    class SceneLines
+    {
+    public:
+      explicit SceneLines(std::istream &input)
+        : input(input)
+      {}
+
+      /// Returns false at the end of the file.
+      bool
+      next()
+      {
+        text.clear();
+        first         = n_lines + 1;
+        is_unfinished = false;
+        std::string line;
+        while (std::getline(input, line))
+          {
+            // Some editors begin a file with the byte order mark of UTF-8,
+            // which would be a part of the first keyword.
+            if (n_lines++ == 0 && starts_with(line, "\xef\xbb\xbf"))
+              line.erase(0, 3);
+            line = trim(line);
+            if (starts_with(line, "#include "))
+              commented_includes.push_back(n_lines);
+            // A backslash at the end continues a line unless there is a comment
+            // on it.
+            is_unfinished = boost::ends_with(line, "\\") &&
+                            line.find('#') == std::string::npos;
+            text += line.substr(0, line.size() - (is_unfinished ? 1 : 0));
+            if (is_unfinished)
+              continue;
+            text = trim(text.substr(0, text.find('#')));
+            std::replace(text.begin(), text.end(), '\t', ' ');
+            return true;
+          }
+        return false;
+      }
+
+      std::string               text;
+      unsigned int              first         = 1; ///< number of its first line
+      bool                      is_unfinished = false;
+      std::vector<unsigned int> commented_includes; ///< numbers of lines
+
+    private:
+      std::istream &input;
+      unsigned int  n_lines = 0;
+    };
+  } // namespace
+
+
+
   void
   ParameterTable::read(std::istream &input, const std::string &file)
   {
@@ -322,34 +377,17 @@ namespace Debond
     std::vector<std::pair<std::string, std::string>> open = {{"", ""}};
     std::map<std::string, std::string>               set_here;
 
-    std::string  text;
-    unsigned int n_lines = 0, first_line = 1, n_unread = 0;
-    for (std::string line; std::getline(input, line);)
+    // Errors refer to the first of lines that are joined. A keyword ends at the
+    // first blank. Keywords are compared without regard to case, names are not.
+    SceneLines   lines(input);
+    unsigned int n_unread = 0;
+    while (n_unread <= most_unread && lines.next())
       {
-        // Some editors begin a file with the byte order mark of UTF-8, which
-        // would be a part of the first keyword.
-        if (n_lines++ == 0 && starts_with(line, "\xef\xbb\xbf"))
-          line.erase(0, 3);
-        line = trim(line);
-        // A backslash at the end continues a line unless there is a comment on
-        // it. Errors refer to the first of the lines that are joined.
-        const bool continued =
-          boost::ends_with(line, "\\") && line.find('#') == std::string::npos;
-        if (starts_with(line, "#include "))
-          notes.push_back(words(
-            file, ':', n_lines, ": this is a comment; include FILE has no #"));
-        text += line.substr(0, line.size() - (continued ? 1 : 0));
-        if (continued)
-          continue;
-
-        text = trim(text.substr(0, text.find('#')));
-        // A keyword ends at the first blank. Keywords are compared without
-        // regard to case, names are not.
-        std::replace(text.begin(), text.end(), '\t', ' ');
-        const std::string at      = words(file, ':', first_line);
-        const std::string section = open.back().first;
-        const std::string prefix  = section.empty() ? "" : section + '/';
-        const std::string keyword =
+        const std::string &text    = lines.text;
+        const std::string  at      = words(file, ':', lines.first);
+        const std::string  section = open.back().first;
+        const std::string  prefix  = section.empty() ? "" : section + '/';
+        const std::string  keyword =
           boost::to_lower_copy(text.substr(0, text.find(' ')));
         const std::string rest   = trim(text.substr(keyword.size()));
         const std::size_t equals = rest.find('=');
@@ -403,26 +441,26 @@ namespace Debond
         // A file of another kind, such as a mesh, would give an error for each
         // of its lines.
         else if (!text.empty() && ++n_unread > most_unread)
-          {
-            errors.push_back(
-              at + ": nor can this and what follows be read; is it a scene?");
-            return;
-          }
+          errors.push_back(
+            at + ": nor can this and what follows be read; is it a scene?");
         else if (!text.empty())
           errors.push_back(at + ": cannot read '" + shortened(text) +
                            "': expected 'subsection NAME', 'set NAME = "
                            "VALUE', 'end' or, outside of subsections, "
                            "'include FILE'");
-        text.clear();
-        first_line = n_lines + 1;
       }
-    if (!text.empty())
+    for (const unsigned int line : lines.commented_includes)
+      notes.push_back(
+        words(file, ':', line, ": this is a comment; include FILE has no #"));
+    own.is_open = false;
+    if (n_unread > most_unread)
+      return;
+    if (lines.is_unfinished)
       errors.push_back(
-        words(file, ':', first_line, ": the file ends in a continued line"));
+        words(file, ':', lines.first, ": the file ends in a continued line"));
     for (std::size_t i = 1; i < open.size(); ++i)
       errors.push_back(open[i].second + ": subsection " + open[i].first +
                        " is not closed by 'end'");
-    own.is_open = false;
   }
 
 
@@ -457,7 +495,9 @@ namespace Debond
       }
     // read() has set the name to that of the included file.
     file_name = file;
-    return read_files[key].values;
+    static const FileValues nothing;
+    const auto              found = read_files.find(key);
+    return found == read_files.end() ? nothing : found->second.values;
   }
 
 

@@ -328,6 +328,43 @@ namespace Debond
             return "";
         }
     }
+    /// Leaves the subgradient at @p x alone in the bundle, and returns J(x).
+    /// The paper does the same every 200 steps (Section 6); here the bundle
+    /// size says when.
+    double
+    restarted(const Functional &functional,
+              const DofVector  &x,
+              DofVector        &eta,
+              Bundle           &bundle)
+    {
+      bundle.clear();
+      functional.subgradient(x, eta);
+      if (is_usable(eta))
+        bundle.add(eta, 0., 0.);
+      return functional.value(x);
+    }
+
+
+
+    /// Lists an iteration that was done with @p size subgradients.
+    void
+    add_iteration(const DirectionProblem::Solution &direction,
+                  const LineSearchResult           &step,
+                  const unsigned int                size,
+                  ProximalBundleResult             &result)
+    {
+      result.long_steps += step.kind == StepKind::long_step;
+      result.short_steps += step.kind == StepKind::short_step;
+      result.null_steps += step.kind == StepKind::null_step;
+      result.history.push_back({result.iterations() + 1,
+                                result.functional,
+                                direction.v,
+                                step.t_L,
+                                step.t_R,
+                                size,
+                                direction.steps,
+                                step.kind});
+    }
   } // namespace
 
 
@@ -375,13 +412,7 @@ namespace Debond
     // x_1 = y_1, and again from x_k once the bundle is full: the subgradient
     // there is all that is known.
     const auto restart = [&]() {
-      // The paper does the same every 200 steps (Section 6); here the bundle
-      // size says when.
-      bundle.clear();
-      result.functional = functional.value(x);
-      functional.subgradient(x, eta);
-      if (is_usable(eta))
-        bundle.add(eta, 0., 0.);
+      result.functional = restarted(functional, x, eta, bundle);
     };
     // Old subgradients may be to blame for a failure: once more without them.
     // With the subgradient at x_k alone the direction is that of steepest
@@ -479,17 +510,7 @@ namespace Debond
             bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
         }
 
-        result.long_steps += step.kind == StepKind::long_step;
-        result.short_steps += step.kind == StepKind::short_step;
-        result.null_steps += step.kind == StepKind::null_step;
-        result.history.push_back({result.iterations() + 1,
-                                  result.functional,
-                                  direction.v,
-                                  step.t_L,
-                                  step.t_R,
-                                  size,
-                                  direction.steps,
-                                  step.kind});
+        add_iteration(direction, step, size, result);
         if (monitor && !monitor(result.history.back()))
           return finish(SolverStatus::interrupted);
       }

@@ -25,6 +25,53 @@ namespace Debond
                    required,
                    '.');
     }
+    /// The state of the current point. Without loads, or with loads that are
+    /// rounding, the largest force is no scale: then forces below @p zero_force
+    /// count as rounding.
+    MajorantProblem::State
+    evaluated(MajorantProblem &problem, const double zero_force)
+    {
+      MajorantProblem::State state = problem.evaluate();
+      if (state.largest_force > 0.)
+        state.residual_rounding =
+          std::max(state.residual_rounding, zero_force / state.largest_force);
+      return state;
+    }
+
+
+
+    /// What a minimisation of the majorant of this @p iteration was short of.
+    std::string
+    unsolved(const MajoriseMinimiseIteration &iteration, const double required)
+    {
+      return words(std::setprecision(3),
+                   "majorise-minimise: the convex subproblem of iteration ",
+                   iteration.iteration,
+                   " was not solved to ",
+                   required,
+                   " in ",
+                   iteration.active_set_steps,
+                   " active-set steps. Try another method.");
+    }
+
+
+
+    std::string
+    has_risen_by(const double                     rise,
+                 const MajoriseMinimiseIteration &iteration,
+                 const double                     required)
+    {
+      return words(std::setprecision(3),
+                   "majorise-minimise: J rose by ",
+                   rise,
+                   " in iteration ",
+                   iteration.iteration,
+                   ", with the relative residual ",
+                   iteration.residual,
+                   ", required is ",
+                   required,
+                   ". Try a larger stop tolerance or another method.");
+    }
   } // namespace
 
 
@@ -44,14 +91,7 @@ namespace Debond
       return what_is_left(result, parameters.tolerance);
     };
     const auto evaluate = [&]() {
-      MajorantProblem::State state = problem.evaluate();
-      if (state.largest_force > 0.)
-        // Without loads, or with loads that are rounding, the largest force is
-        // no scale. Forces below zero_force count as rounding then.
-        state.residual_rounding =
-          std::max(state.residual_rounding,
-                   parameters.zero_force / state.largest_force);
-      return state;
+      return evaluated(problem, parameters.zero_force);
     };
     MajorantProblem::State state = evaluate();
     const auto             note  = [&]() {
@@ -121,16 +161,8 @@ namespace Debond
                             "neither the bonds that are left nor the "
                             "foundation hold the body: J falls without end.");
             if (!can_be_verified(inner.status))
-              return finish(
-                SolverStatus::quadratic_program,
-                words(std::setprecision(3),
-                      "majorise-minimise: the convex subproblem of iteration ",
-                      iteration.iteration,
-                      " was not solved to ",
-                      inner_tolerance,
-                      " in ",
-                      iteration.active_set_steps,
-                      " active-set steps. Try another method."));
+              return finish(SolverStatus::quadratic_program,
+                            unsolved(iteration, inner_tolerance));
             state = evaluate();
             inner_tolerance *= forcing;
           }
@@ -144,19 +176,11 @@ namespace Debond
         result.history.push_back(iteration);
         // Where the optimality conditions hold, J has no more to fall.
         if (has_risen() && !has_converged(state))
-          return finish(
-            SolverStatus::no_descent,
-            words(std::setprecision(3),
-                  "majorise-minimise: J rose by ",
-                  state.functional - before.functional -
-                    before.functional_rounding,
-                  " in iteration ",
-                  iteration.iteration,
-                  ", with the relative residual ",
-                  state.residual,
-                  ", required is ",
-                  parameters.tolerance,
-                  ". Try a larger stop tolerance or another method."));
+          return finish(SolverStatus::no_descent,
+                        has_risen_by(state.functional - before.functional -
+                                       before.functional_rounding,
+                                     iteration,
+                                     parameters.tolerance));
         // The minimum of the same majorant once more, and no better: this is
         // what rounding leaves.
         if (!is_new && !has_converged(state) &&
