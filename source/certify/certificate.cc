@@ -76,10 +76,10 @@ namespace Debond
             return std::abs(a - b) > Tolerance::linear_data * std::abs(b);
           };
           if (differ(here.energy, first->energy) ||
-              differ(here.stretch, first->stretch))
+              differ(here.length, first->length))
             throw EquilibriumError("bonds that vary along a side are not done");
         }
-      return law.scaled(first->energy, first->stretch);
+      return law.scaled(first->energy, first->length);
     }
 
 

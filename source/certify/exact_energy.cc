@@ -62,7 +62,7 @@ namespace Debond
         // The law of this face has its kinks stretched by the bonds' scale.
         std::vector<double> kinks = law.kinks();
         for (double &kink : kinks)
-          kink *= bonds.stretch;
+          kink *= bonds.length;
         const std::vector<double> ends =
           pieces_between_kinks(trace[0], trace[1], middle, kinks);
         for (unsigned int i = 0; i + 1 < ends.size(); ++i)
@@ -74,7 +74,7 @@ namespace Debond
                                    2. * t * (1. - t) * middle +
                                    t * t * trace[1];
               energy += face.measure * length * rule.weight(q) * bonds.energy *
-                        law.value(value / bonds.stretch);
+                        law.value(value / bonds.length);
             }
       }
     return energy;

@@ -117,7 +117,7 @@ namespace Debond
           return bonds.energy == 0. ||
                      adhesion.reached_at(face, coordinates) < -broken_beyond ?
                    0. :
-                   broken_beyond * bonds.stretch;
+                   broken_beyond * bonds.length;
         };
         const auto density = [&](const std::array<double, dim> &place) {
           return boundary.density(face, place);
@@ -195,10 +195,9 @@ namespace Debond
                 place[k] = 1.;
               }
             // What has broken for good stays broken where it closes.
-            beyond[k] =
-              std::max(adhesion.points().opening(face, place, s),
-                       -adhesion.reached_at(face, k) * bonds.stretch) -
-              broken_beyond * bonds.stretch;
+            beyond[k] = std::max(adhesion.points().opening(face, place, s),
+                                 -adhesion.reached_at(face, k) * bonds.length) -
+                        broken_beyond * bonds.length;
             grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
             const dealii::Point<dim> &vertex = face.vertices[k];
             const auto [other, is_first] =

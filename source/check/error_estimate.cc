@@ -110,37 +110,38 @@ namespace Debond
     class Residuals
     {
     public:
-      Residuals(const EstimatedProblem<dim> &of,
+      Residuals(const EstimatedProblem<dim> &given,
                 const DofVector             &u,
                 const LoadFactors            factors)
-        : of(of)
-        , degree(of.problem.unknowns().degree())
-        , boundary(of.problem.unknowns().contact().boundary())
-        , symmetry(of.problem.unknowns().symmetry())
-        , s(of.problem.unknowns().contact().trace(u))
+        : given(given)
+        , degree(given.problem.unknowns().degree())
+        , boundary(given.problem.unknowns().contact().boundary())
+        , symmetry(given.problem.unknowns().symmetry())
+        , s(given.problem.unknowns().contact().trace(u))
         , load_factor(factors.loads)
-        , heat_factor(of.problem.fields().heat_factor(factors))
-        , temperature_change(of.loads.temperature_change ?
-                               of.loads.temperature_change :
-                               of.dead_loads.temperature_change)
-        , has_volume_loads(of.loads.body_force || of.dead_loads.body_force ||
-                           temperature_change)
+        , heat_factor(given.problem.fields().heat_factor(factors))
+        , temperature_change(given.loads.temperature_change ?
+                               given.loads.temperature_change :
+                               given.dead_loads.temperature_change)
+        , has_volume_loads(given.loads.body_force ||
+                           given.dead_loads.body_force || temperature_change)
         , largest_s(s.template lpNorm<Eigen::Infinity>())
         , n_stresses(degree == 2 || temperature_change ? dim + 1 : 1)
-        , displacement(of.problem.unknowns().cartesian_displacement(u, factors))
-        , at_points(of.problem.fields(),
+        , displacement(
+            given.problem.unknowns().cartesian_displacement(u, factors))
+        , at_points(given.problem.fields(),
                     displacement,
                     factors,
                     strain_rule<dim>(degree))
         , fe(1)
         , at_loads(fe, dealii::QGaussSimplex<dim>(2), Symmetry::none)
-        , on_face(of.problem.unknowns().mapping(),
+        , on_face(given.problem.unknowns().mapping(),
                   fe,
                   face_rule<dim>(1),
                   dealii::update_values | dealii::update_quadrature_points |
                     dealii::update_normal_vectors | dealii::update_JxW_values)
       {
-        const auto        &dofs = of.problem.unknowns().dof_handler();
+        const auto        &dofs = given.problem.unknowns().dof_handler();
         const unsigned int n    = dofs.get_triangulation().n_active_cells();
         cells.reserve(n);
         stresses.reserve(std::size_t(n) * n_stresses);
@@ -149,7 +150,7 @@ namespace Debond
              f-- > 0;)
           {
             first_contact_face[boundary.faces[f].cell] = f;
-            if (of.conditions.high_sides.count(boundary.faces[f].id) > 0)
+            if (given.conditions.high_sides.count(boundary.faces[f].id) > 0)
               of_interfaces.emplace(
                 place_on_line(middle_of(boundary.faces[f].vertices)), f);
           }
@@ -216,19 +217,19 @@ namespace Debond
       void
       add_cell(const CellIterator &cell)
       {
-        const SimplexValues<dim> &of_cell  = at_points.values();
-        const Material           &material = of.problem.fields().material(cell);
-        const double              mu       = material.shear_modulus();
-        const double              lambda = material.template lame_lambda<dim>();
-        const bool                has_axis = symmetry == Symmetry::axis;
-        const double              around =
+        const SimplexValues<dim> &of_cell = at_points.values();
+        const Material &material = given.problem.fields().material(cell);
+        const double    mu       = material.shear_modulus();
+        const double    lambda   = material.template lame_lambda<dim>();
+        const bool      has_axis = symmetry == Symmetry::axis;
+        const double    around =
           has_axis ? circumference(symmetry, cell->center()) : 1.;
         const int    n_traced       = has_axis ? 3 : dim;
         const double part_of_lambda = lambda / (2. * mu + n_traced * lambda);
         cells.push_back(
           {lambda + 2. * mu,
            material.orthotropy ?
-             orthotropic_yield(of.problem.fields().solid_tensor(cell)) :
+             orthotropic_yield(given.problem.fields().solid_tensor(cell)) :
              1. / mu * dealii::unit_symmetric_tensor<dim>(),
            around * bubble_energy(of_cell),
            {}});
@@ -243,7 +244,7 @@ namespace Debond
           return has_axis ? dealii::trace(of_solid) :
                             dealii::trace(resized<dim>(of_solid));
         };
-        const Stress3 &of_heat = of.problem.fields().thermal_stress(cell);
+        const Stress3 &of_heat = given.problem.fields().thermal_stress(cell);
         const double   mean =
           std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
         Stress3      in_middle;
@@ -303,10 +304,10 @@ namespace Debond
             const dealii::Point<dim> point = at_loads.quadrature_point(q);
             const double             around =
               at_loads.JxW(q) * circumference(symmetry, point);
-            if (of.loads.body_force)
-              force += load_factor * around * of.loads.force_at(point);
-            if (of.dead_loads.body_force)
-              force += around * of.dead_loads.force_at(point);
+            if (given.loads.body_force)
+              force += load_factor * around * given.loads.force_at(point);
+            if (given.dead_loads.body_force)
+              force += around * given.dead_loads.force_at(point);
             if (!temperature_change)
               continue;
             const double change = at_loads.JxW(q) / at_loads.measure() *
@@ -448,9 +449,9 @@ namespace Debond
                         unsigned int       &n_contact_faces)
       {
         const auto id         = cell->face(f)->boundary_id();
-        const bool is_contact = of.conditions.contact.count(id) > 0;
+        const bool is_contact = given.conditions.contact.count(id) > 0;
         // Those of a cell follow each other.
-        const bool   is_low       = of.conditions.low_sides.count(id) > 0;
+        const bool   is_low       = given.conditions.low_sides.count(id) > 0;
         unsigned int contact_face = 0;
         std::array<unsigned int, dim> vertices; // of the contact face
         for (unsigned int v = 0; v < dim; ++v)
@@ -461,7 +462,7 @@ namespace Debond
           contact_face =
             first_contact_face.at(cell->id().get_coarse_cell_id()) +
             n_contact_faces++;
-        if (of.conditions.clamped.count(id) > 0)
+        if (given.conditions.clamped.count(id) > 0)
           return;
 
         const Face      face    = face_of(cell, f);
@@ -487,8 +488,8 @@ namespace Debond
             for (unsigned int v = 0; v < dim; ++v)
               r -= (degree == 1 ? 1. / dim : coordinates[v]) *
                    (stress_at(face.cell, face.in_cell[v]).whole * normal);
-            r += load_factor * of.loads.traction(id, point, normal) +
-                 of.dead_loads.traction(id, point, normal);
+            r += load_factor * given.loads.traction(id, point, normal) +
+                 given.dead_loads.traction(id, point, normal);
             if (is_contact)
               {
                 std::array<double, dim> there;
@@ -560,9 +561,9 @@ namespace Debond
         const dealii::Tensor<1, dim> normal =
           (side.area * face.normal > 0. ? 1. : -1.) * face.normal;
         const Jump<dim> traction =
-          ::Debond::traction(of.adhesion, face, coordinates, s);
+          Debond::traction(given.adhesion, face, coordinates, s);
         const ContactPoint<dim> point =
-          of.adhesion.points().point_at(face, coordinates);
+          given.adhesion.points().point_at(face, coordinates);
         const double trace     = point.normal_displacement(s);
         double       r_nu      = r * normal - traction.normal;
         bool         is_closed = true;
@@ -585,7 +586,7 @@ namespace Debond
                             (direction * (cells[side.cell].yield * direction)));
         };
         r_nu /= stretched(normal, traction.normal, trace);
-        if (of.conditions.fixes_tangential(face.id))
+        if (given.conditions.fixes_tangential(face.id))
           return r_nu * normal;
         // On the low side of an interface bonds pull the other way.
         dealii::Tensor<1, dim> along = r - (r * normal) * normal;
@@ -609,7 +610,7 @@ namespace Debond
                 const dealii::types::boundary_id id) const
       {
         for (const PrescribedDisplacement<dim> &held :
-             of.supports.displacements)
+             given.supports.displacements)
           if (held.boundaries.count(id) > 0)
             {
               if (held.is_roller)
@@ -622,7 +623,7 @@ namespace Debond
         return r;
       }
 
-      const EstimatedProblem<dim> of;
+      const EstimatedProblem<dim> given;
       const unsigned int          degree;
       const ContactBoundary<dim> &boundary;
       const Symmetry              symmetry;
@@ -655,19 +656,20 @@ namespace Debond
 
   template <int dim>
   ErrorEstimate
-  estimate_error(const EstimatedProblem<dim> &of,
+  estimate_error(const EstimatedProblem<dim> &given,
                  const DofVector             &u,
                  const double                 functional,
                  const LoadFactors            factors,
                  const std::optional<double>  error_factor)
   {
-    const auto                   &dofs  = of.problem.unknowns().dof_handler();
-    const MPI_Comm                ranks = of.problem.unknowns().communicator();
+    const auto    &dofs  = given.problem.unknowns().dof_handler();
+    const MPI_Comm ranks = given.problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
     on_all_ranks(ranks, [&]() { residuals.emplace(of, u, factors); });
 
-    const double constant = calibration<dim>(of.problem.unknowns().degree()) *
-                            error_factor.value_or(1.);
+    const double constant =
+      calibration<dim>(given.problem.unknowns().degree()) *
+      error_factor.value_or(1.);
     ErrorEstimate result;
     result.factor = error_factor;
     result.cells  = std::move(residuals->parts);

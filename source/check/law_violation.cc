@@ -43,9 +43,9 @@ namespace Debond
       scales.push_back({largest.length, std::max(largest_force, least)});
     const auto set =
       [&](const unsigned int i, const BondScale &bonds, const double measure) {
-        const double threshold = first_threshold(law) * bonds.stretch;
+        const double threshold = first_threshold(law) * bonds.length;
         const double strength =
-          law.bond_strength() * bonds.energy / bonds.stretch * measure;
+          law.bond_strength() * bonds.energy / bonds.length * measure;
         const bool has_bonds = threshold > 0. && strength > 0.;
         LawScale  &scale     = scales[i];
         if (has_bonds)
@@ -67,7 +67,7 @@ namespace Debond
         if (bonds.shear_energy > 0.)
           shear = bonds.in_shear();
         else if (bonds.shear > 0.)
-          shear.stretch /= std::sqrt(bonds.shear);
+          shear.length /= std::sqrt(bonds.shear);
         for (const auto &tangent : node.tangents)
           if (!tangent.is_held)
             set(tangent.index,

@@ -62,7 +62,7 @@ namespace Debond
           bonds.energy > 0.)
         {
           const double strength =
-            law.bond_strength() * bonds.energy / bonds.stretch;
+            law.bond_strength() * bonds.energy / bonds.length;
           double &faces = faces_by_modulus[face.cell];
           faces         = std::min(faces,
                            energy * bonds.energy /
@@ -186,7 +186,7 @@ namespace Debond
         const ContactNodeState &node  = verification.nodes[i];
         const BondScale         bonds = adhesion.points().bonds_at(i);
         could_bear += adhesion.adhesive_law().bond_strength() * bonds.energy /
-                      bonds.stretch *
+                      bonds.length *
                       adhesion.contact_boundary().nodes[i].measure;
         if (!node.mode_mixity)
           along += verification.tangential_forces[i].norm();

@@ -99,8 +99,8 @@ namespace Debond
         bonds.energy == 0. ?
           BondState::free :
           state_of(std::max(least_piece,
-                            branches.index(-node.opening / bonds.stretch)));
-      const double threshold = first_threshold(law) * bonds.stretch;
+                            branches.index(-node.opening / bonds.length)));
+      const double threshold = first_threshold(law) * bonds.length;
       const double no_gap =
         std::max(scale.rounding,
                  tolerance * (threshold > 0. ? std::min(threshold, largest_s) :
@@ -127,7 +127,7 @@ namespace Debond
            k < branches.size() && bonds.energy > 0.;
            ++k)
         {
-          const double kink = branches[k].upper * bonds.stretch;
+          const double kink = branches[k].upper * bonds.length;
           if (std::abs(-node.opening - kink) <= tolerance * std::abs(kink))
             {
               node.state  = BondState::kink;
@@ -303,12 +303,12 @@ namespace Debond
       node.normal_force   = normal_force;
       node.allowed_force  = unbounded_above_if(s >= 0., bond_forces);
       node.bond_stiffness = std::max(0., law.second_derivative(0.)) *
-                            bonds.energy / (bonds.stretch * bonds.stretch);
-      node.bond_threshold = law.bond_threshold() * bonds.stretch;
+                            bonds.energy / (bonds.length * bonds.length);
+      node.bond_threshold = law.bond_threshold() * bonds.length;
       node.damage         = bonds.energy == 0. ?
                               0. :
                               law.damage(std::min(adhesion.reached(i),
-                                          -node.opening / bonds.stretch));
+                                          -node.opening / bonds.length));
       return node;
     }
 
@@ -395,9 +395,9 @@ namespace Debond
       const unsigned int n_nodes = adhesion.n_nodes();
       double largest = s.head(n_nodes).template lpNorm<Eigen::Infinity>();
       for (unsigned int i = 0; i < n_nodes; ++i)
-        largest = std::max(largest,
-                           -adhesion.reached(i) *
-                             adhesion.points().bonds_at(i).stretch);
+        largest =
+          std::max(largest,
+                   -adhesion.reached(i) * adhesion.points().bonds_at(i).length);
       return largest;
     }
   } // namespace

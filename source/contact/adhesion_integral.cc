@@ -43,7 +43,7 @@ namespace Debond
     way_to_end(const AdhesiveLaw       &law,
                const ContactPoint<dim> &point,
                const Jump<dim>         &jump,
-               const double             stretch,
+               const double             scaled,
                const double             reached,
                const Jump<dim>         &way)
     {
@@ -51,9 +51,9 @@ namespace Debond
       if (point.bonds.energy == 0.)
         return infinity;
       const PiecewiseEnergy::Piece piece =
-        law.pieces().piece_at(stretch, reached);
+        law.pieces().piece_at(scaled, reached);
       if (!point.shears())
-        return piece.way_to_end(stretch, way.normal / point.bonds.stretch);
+        return piece.way_to_end(scaled, way.normal / point.bonds.length);
       // After the part x of the way the square of the opening is A x^2 + 2 B x
       // + C. The end of a piece, at an opening L, is where this is L^2.
       const double shear = point.bonds.shear;
@@ -66,7 +66,7 @@ namespace Debond
       // line is below it. Of both forms of a root the one without a difference
       // of nearly equal numbers is taken.
       const auto square_at = [&](const double end) {
-        return end * end * point.bonds.stretch * point.bonds.stretch;
+        return end * end * point.bonds.length * point.bonds.length;
       };
       if (std::isfinite(piece.lower) && A > 0.)
         {
@@ -110,15 +110,15 @@ namespace Debond
   void
   AdhesionIntegral<dim>::break_for_good(const VectorView &s)
   {
-    // The memory of a point is the least stretch that it has ever had, so it
-    // only falls, and a second call with the same s changes nothing. Where
-    // there is no memory yet, reached is 0, which no stretch at s <= 0 exceeds.
+    // The memory of a point is the least displacement that it has ever had, so
+    // it only falls, and a second call with the same s changes nothing. Where
+    // there is no memory yet, reached is 0, which none at s <= 0 exceeds.
     const bool has_mode = contact_points.toughness_by_mode() != nullptr;
     BondMemory memory   = has_mode ? memory_with_modes() : broken;
     memory.reached.clear();
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       const std::size_t q   = memory.reached.size();
-      const double      now = std::min(reached, stretch);
+      const double      now = std::min(reached, scaled);
       memory.reached.push_back(now);
       if (!has_mode)
         return;
@@ -128,7 +128,7 @@ namespace Debond
                          (law.value(0., now) - law.value(0., reached));
       // The mode of the next step, unless that shows another one. Bonds that
       // bear nothing yet have none: it would be that of rounding.
-      if (bears(stretch))
+      if (bears(scaled))
         memory.mixity[q] = point.jump(s).part_of_shear(point.bonds.shear);
     });
     set_memory(memory);
@@ -154,21 +154,24 @@ namespace Debond
     BondMemory  memory     = memory_with_modes();
     const auto *last_point = last.points().list().data();
     double      lag = 0., without_mode = 0., all = 0.;
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       // Both lists have the same points in the same order.
       const std::size_t q     = last_point - last.points().list().data();
       const Jump<dim>   start = last_point++->jump(last_s);
       // What has a mode keeps it in this step. What has none has that of the
       // place on the straight way to here at which it begins to be damaged.
       const bool has_mode =
-        memory.taken[q] > 0. || bears(point.stretch_at(start));
+        memory.taken[q] > 0. || bears(point.scaled_displacement(start));
       const Jump<dim> way = point.jump(s).moved(start, -1.);
       const double    part =
-        has_mode ?
-             1. :
-             std::min(1.,
-                   way_to_end(
-                     law, point, start, point.stretch_at(start), reached, way));
+        has_mode ? 1. :
+                      std::min(1.,
+                            way_to_end(law,
+                                       point,
+                                       start,
+                                       point.scaled_displacement(start),
+                                       reached,
+                                       way));
       const double mixity =
         start.moved(way, part).part_of_shear(point.bonds.shear);
       if (point.bonds.energy == 0. || std::isnan(mixity))
@@ -176,12 +179,12 @@ namespace Debond
       // What they take with the energy that they have, and with another one: it
       // is reached at another opening. With `factor` times the energy at the
       // same stiffness the law is stretched by its square root, so that the
-      // same jump is at another stretch of it.
+      // same jump is another multiple of its length.
       const double before = memory.toughness[q];
       const double after  = (*toughness)(mixity, point.bonds.energy / before);
       const auto   taken_with = [&](const double factor) {
         const double now =
-          std::min(reached, stretch * std::sqrt(before / factor));
+          std::min(reached, scaled * std::sqrt(before / factor));
         return point.weight * point.bonds.energy * factor / before *
                (law.value(0., now) - law.value(0., reached));
       };
@@ -301,11 +304,11 @@ namespace Debond
   AdhesionIntegral<dim>::value(const VectorView &s) const
   {
     // This is the quadrature of the last term of J. Bonds that vary have the
-    // energy times j_1(s / stretch), so that one law serves all points and only
+    // energy times j_1(s / length), so that one law serves all points and only
     // two numbers a point are stored.
     double sum = 0.;
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
-      sum += point.weight * point.bonds.energy * law.value(stretch, reached);
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
+      sum += point.weight * point.bonds.energy * law.value(scaled, reached);
     });
     // What they have taken was with other energies than they have now.
     if (!broken.taken.empty())
@@ -332,8 +335,8 @@ namespace Debond
   {
     // The value of the law at 0 is what does not come back when bonds are
     // released: the constant j_1(p_m) - p_m tau(p_m) / 2 of the secant
-    // parabola. The stretch is not used, so that the sum depends neither on s
-    // nor on what is prescribed.
+    // parabola. The displacement is not used, so that the sum depends neither
+    // on s nor on what is prescribed.
     double sum = 0.;
     for_each_point(Eigen::VectorXd::Zero(n_unknowns()),
                    [&](const auto &point, double, double reached) {
@@ -349,26 +352,27 @@ namespace Debond
   Eigen::VectorXd
   AdhesionIntegral<dim>::subgradient(const VectorView &s) const
   {
-    // By the chain rule the derivative of j_1(s / stretch) has the factor 1 /
-    // stretch, which is part of force(). At a kink (9) allows an interval of
-    // tractions; the bundle methods ask for one element only, and the law takes
-    // the one on the side of 0.
+    // By the chain rule the derivative of j_1(s / length) has the factor 1 /
+    // length, which is part of force_factor(). At a kink (9) allows an interval
+    // of tractions; the bundle methods ask for one element only, and the law
+    // takes the one on the side of 0.
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(s.size());
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       if (point.shears())
         {
           // In the product of jumps dj_1(-l)/dl = tau, so that the derivative
           // along an unknown is tau/l times the product of the jump with what
           // the unknown makes of it.
-          const double stiffness =
-            point.force() / point.bonds.stretch * law.secant(stretch, reached);
+          const double stiffness = point.force_factor() / point.bonds.length *
+                                   law.secant(scaled, reached);
           const Jump<dim> jump = point.jump(s);
           point.for_each_unknown([&](const unsigned int i, const auto &by) {
             xi(i) += stiffness * by.product(jump, point.bonds.shear);
           });
           return;
         }
-      const double force = point.force() * law.derivative(stretch, reached);
+      const double force =
+        point.force_factor() * law.derivative(scaled, reached);
       for (unsigned int k = 0; k < point.n_nodes; ++k)
         xi(point.index[k]) += point.shape[k] * force;
     });
@@ -426,12 +430,12 @@ namespace Debond
     // and a quadratic of one curvature k lies above j_1(-l) if k is at least
     // both: of all jumps of one length the least value is at that along the
     // jump, where it is the one of the law itself.
-    const auto of_law = [this](const double stretch, const double reached) {
-      return law.curvature(stretch, reached);
+    const auto of_law = [this](const double scaled, const double reached) {
+      return law.curvature(scaled, reached);
     };
-    const auto of_all = [this](const double stretch, const double reached) {
-      return std::max(law.curvature(stretch, reached),
-                      law.secant(stretch, reached));
+    const auto of_all = [this](const double scaled, const double reached) {
+      return std::max(law.curvature(scaled, reached),
+                      law.secant(scaled, reached));
     };
     return shears() ? matrix(s, of_all, of_all) : matrix(s, of_law, of_law);
   }
@@ -448,11 +452,11 @@ namespace Debond
     // derivative, across it tau/l.
     return matrix(
       s,
-      [this](const double stretch, const double reached) {
-        return law.second_derivative(stretch, reached);
+      [this](const double scaled, const double reached) {
+        return law.second_derivative(scaled, reached);
       },
-      [this](const double stretch, const double reached) {
-        return law.secant(stretch, reached);
+      [this](const double scaled, const double reached) {
+        return law.secant(scaled, reached);
       });
   }
 
@@ -469,12 +473,12 @@ namespace Debond
     // Offsets are part of the displacements for ds, but they do not move, so
     // that they are taken off again.
     double first = limit;
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       const Jump<dim> way = {point.normal_displacement(ds) - point.offset,
                              point.jump(ds).tangential - point.slip_offset};
       first =
         std::min(first,
-                 way_to_end(law, point, point.jump(s), stretch, reached, way));
+                 way_to_end(law, point, point.jump(s), scaled, reached, way));
     });
     return first;
   }
@@ -491,7 +495,7 @@ namespace Debond
     // these points to those of the next step.
     double      first      = 1.;
     const auto *next_point = next.points().list().data();
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       // Both have the same points, in the same order.
       const auto     &to  = *next_point++;
       const Jump<dim> way = {to.normal_displacement(next_s) -
@@ -500,7 +504,7 @@ namespace Debond
                                point.jump(s).tangential};
       first =
         std::min(first,
-                 way_to_end(law, point, point.jump(s), stretch, reached, way));
+                 way_to_end(law, point, point.jump(s), scaled, reached, way));
     });
     return first;
   }
@@ -516,7 +520,7 @@ namespace Debond
     add_allowed(const AdhesiveLaw         &law,
                 const ContactPoint<dim>   &point,
                 const Jump<dim>           &jump,
-                const double               stretch,
+                const double               scaled,
                 const double               reached,
                 const std::vector<double> &delta,
                 std::vector<Interval>     &forces)
@@ -526,28 +530,28 @@ namespace Debond
       // unknown i the opening changes by at most the radius, and the cosine of
       // the angle by at most delta L / l, L the length of the unknown in the
       // product of jumps; from a radius of l on the jump may have any
-      // direction. The stretch is negative, as tractions are, so that the
+      // direction. The displacement is negative, as tractions are, so that the
       // product of a traction with this cosine is the force.
       const double shear = point.bonds.shear;
       point.for_each_unknown([&](const unsigned int i, const auto &by) {
         const double   size   = std::sqrt(by.product(by, shear));
-        const double   radius = delta[i] * size / point.bonds.stretch;
+        const double   radius = delta[i] * size / point.bonds.length;
         const Interval traction =
-          law.goldstein_interval(stretch, radius, reached);
+          law.goldstein_interval(scaled, radius, reached);
         const double cosine =
-          stretch == 0. || size == 0. ?
+          scaled == 0. || size == 0. ?
             0. :
-            by.product(jump, shear) / (size * stretch * point.bonds.stretch);
-        const double spread = radius == 0.       ? 0. :
-                              radius >= -stretch ? 2. :
-                                                   radius / -stretch;
+            by.product(jump, shear) / (size * scaled * point.bonds.length);
+        const double spread = radius == 0.      ? 0. :
+                              radius >= -scaled ? 2. :
+                                                  radius / -scaled;
         // Tractions are not positive.
         const double low  = std::max(-1., cosine - spread);
         const double high = std::min(1., cosine + spread);
         forces[i].lower +=
-          point.force() * size *
+          point.force_factor() * size *
           std::min(traction.lower * high, traction.upper * high);
-        forces[i].upper += point.force() * size *
+        forces[i].upper += point.force_factor() * size *
                            std::max(traction.lower * low, traction.upper * low);
       });
     }
@@ -567,11 +571,11 @@ namespace Debond
     // the interval of a node is the sum of theirs. Values of the shape
     // functions are not negative, which keeps lower ends below upper ends.
     std::vector<Interval> forces(n_unknowns(), Interval{0., 0.});
-    for_each_point(s, [&](const auto &point, double stretch, double reached) {
+    for_each_point(s, [&](const auto &point, double scaled, double reached) {
       if (point.shears())
         {
           add_allowed(
-            law, point, point.jump(s), stretch, reached, delta, forces);
+            law, point, point.jump(s), scaled, reached, delta, forces);
           return;
         }
       for (unsigned int k = 0; k < point.n_nodes; ++k)
@@ -580,11 +584,13 @@ namespace Debond
           // Each node's radius is that of its own force: how far s may be wrong
           // differs from node to node.
           const Interval traction =
-            law.goldstein_interval(stretch,
-                                   delta[node] / point.bonds.stretch,
+            law.goldstein_interval(scaled,
+                                   delta[node] / point.bonds.length,
                                    reached);
-          forces[node].lower += point.force() * point.shape[k] * traction.lower;
-          forces[node].upper += point.force() * point.shape[k] * traction.upper;
+          forces[node].lower +=
+            point.force_factor() * point.shape[k] * traction.lower;
+          forces[node].upper +=
+            point.force_factor() * point.shape[k] * traction.upper;
         }
     });
     return forces;

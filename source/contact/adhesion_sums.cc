@@ -13,10 +13,10 @@ namespace Debond
     const double beyond = phi.adhesive_law().broken_beyond();
     double       sum    = 0.;
     phi.for_each_point(s,
-                       [&](const auto &point, double stretch, double reached) {
-                         if (stretch < 0. && point.n_entries > 0 &&
+                       [&](const auto &point, double scaled, double reached) {
+                         if (scaled < 0. && point.n_entries > 0 &&
                              (point.bonds.energy == 0. ||
-                              std::min(reached, stretch) < -beyond))
+                              std::min(reached, scaled) < -beyond))
                            sum += point.weight;
                        });
     return sum;
@@ -32,15 +32,16 @@ namespace Debond
     // Vertices that stay at the foundation have no entry in the list.
     if (!forces.empty())
       phi.for_each_point(
-        s, [&](const auto &point, double stretch, double reached) {
+        s, [&](const auto &point, double scaled, double reached) {
           if (point.shears())
             {
               // With bonds that shear the force is tau/l times the jump, along
               // the normal and, times the ratio of the stiffnesses, along the
               // boundary.
-              const AdhesiveLaw &law = phi.adhesive_law();
-              const double stiffness = point.force() / point.bonds.stretch *
-                                       law.secant(stretch, reached);
+              const AdhesiveLaw &law       = phi.adhesive_law();
+              const double       stiffness = point.force_factor() /
+                                       point.bonds.length *
+                                       law.secant(scaled, reached);
               const Jump<dim> jump = point.jump(s);
               for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
                 forces[point.index[k]] +=
@@ -54,8 +55,8 @@ namespace Debond
           // count these and not the nodes.
           for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
             forces[point.index[k]] +=
-              point.shape[k] * point.force() *
-              phi.adhesive_law().derivative(stretch, reached);
+              point.shape[k] * point.force_factor() *
+              phi.adhesive_law().derivative(scaled, reached);
         });
     return forces;
   }
@@ -74,14 +75,14 @@ namespace Debond
     const ContactPoint<dim> point   = phi.points().point_at(face, place);
     const BondScale        &bonds   = point.bonds;
     const double            reached = phi.reached_at(face, place);
-    const double            stretch = point.stretch(s);
+    const double            scaled  = point.scaled_displacement(s);
     if (!point.shears())
-      return {bonds.energy / bonds.stretch *
-                phi.adhesive_law().derivative(stretch, reached),
+      return {bonds.energy / bonds.length *
+                phi.adhesive_law().derivative(scaled, reached),
               {}};
     // Per area: the same as in Phi without the weight of a point.
-    const double stiffness = bonds.energy / (bonds.stretch * bonds.stretch) *
-                             phi.adhesive_law().secant(stretch, reached);
+    const double stiffness = bonds.energy / (bonds.length * bonds.length) *
+                             phi.adhesive_law().secant(scaled, reached);
     Jump<dim> result = point.jump(s);
     result.normal *= stiffness;
     result.tangential *= stiffness * bonds.shear;
@@ -121,11 +122,11 @@ namespace Debond
     // displacements, which tells them from all others.
     std::vector<double> lost(phi.n_unknowns(), 0.), all(phi.n_unknowns(), 0.);
     phi.for_each_point(s,
-                       [&](const auto &point, double stretch, double reached) {
+                       [&](const auto &point, double scaled, double reached) {
                          if (point.n_entries > 0)
                            return;
-                         const double damage = phi.adhesive_law().damage(
-                           std::min(reached, stretch));
+                         const double damage =
+                           phi.adhesive_law().damage(std::min(reached, scaled));
                          for (const auto &part : point.slip)
                            {
                              const double share =
@@ -154,14 +155,14 @@ namespace Debond
     const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
     bool                   is_at  = false;
     phi.for_each_point(s,
-                       [&](const auto &point, double stretch, double reached) {
+                       [&](const auto &point, double scaled, double reached) {
                          for (unsigned int k = 0; k + 1 < pieces.size(); ++k)
                            is_at =
                              is_at ||
                              (point.bonds.energy > 0. && pieces.has_drop(k) &&
                               pieces[k].lower <= reached &&
-                              std::abs(stretch - pieces[k].lower) <=
-                                part * std::abs(stretch));
+                              std::abs(scaled - pieces[k].lower) <=
+                                part * std::abs(scaled));
                        });
     return is_at;
   }
@@ -180,12 +181,12 @@ namespace Debond
     const AdhesiveLaw &law = phi.adhesive_law();
     return phi.matrix(
       s,
-      [&](const double stretch, const double reached) {
-        return std::min(law.second_derivative((1. + part) * stretch, reached),
-                        law.second_derivative((1. - part) * stretch, reached));
+      [&](const double scaled, const double reached) {
+        return std::min(law.second_derivative((1. + part) * scaled, reached),
+                        law.second_derivative((1. - part) * scaled, reached));
       },
-      [&](const double stretch, const double reached) {
-        return law.secant((1. + part) * stretch, reached);
+      [&](const double scaled, const double reached) {
+        return law.secant((1. + part) * scaled, reached);
       });
   }
 

@@ -52,11 +52,11 @@ namespace Debond
     // What has no bonds breaks nowhere.
     if (a_here == 0.)
       return {0., 1.};
-    // j of stiffness a and threshold M becomes energy j(s / stretch) of
-    // stiffness energy a / stretch^2 and threshold stretch M.
-    const double stretch = bond_value<dim>(bonds, M, point, true) / M;
-    const double scale   = a_here / a;
-    BondScale    result  = {scale * stretch * stretch, stretch};
+    // j of stiffness a and threshold M becomes energy j(s / length) of
+    // stiffness energy a / length^2 and threshold length M.
+    const double length = bond_value<dim>(bonds, M, point, true) / M;
+    const double scale  = a_here / a;
+    BondScale    result = {scale * length * length, length};
     if (shear.boundaries.count(id) > 0)
       {
         // BondScale::shear is relative to the stiffness along the normal here,

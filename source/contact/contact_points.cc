@@ -79,11 +79,10 @@ namespace Debond
         if (measure == 0.)
           first = bonds;
         is_mixed = is_mixed || bonds.energy != first.energy ||
-                   bonds.stretch != first.stretch ||
-                   bonds.shear != first.shear ||
+                   bonds.length != first.length || bonds.shear != first.shear ||
                    bonds.shear_energy != first.shear_energy;
         measure += more;
-        const double own = bonds.energy / (bonds.stretch * bonds.stretch);
+        const double own = bonds.energy / (bonds.length * bonds.length);
         stiffness += more * own;
         energy += more * bonds.energy;
         shear += more * own * bonds.shear;
@@ -106,7 +105,7 @@ namespace Debond
     };
     // Where boundaries with different bonds meet, a vertex has the bonds of
     // each of them. Nodal quadrature needs one law there. The mean stiffness a
-    // = energy / stretch^2 and the mean energy keep what the bonds are as
+    // = energy / length^2 and the mean energy keep what the bonds are as
     // springs and what it takes to break them; the threshold follows from these
     // two. The means are weighted by the integral of the vertex's function on
     // each face, as the energy of the vertex in Phi is.

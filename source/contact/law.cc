@@ -13,11 +13,11 @@
 namespace Debond
 {
   AdhesiveLaw::AdhesiveLaw(const std::vector<EnergyPiece> &pieces)
-    : minimum(pieces)
+    : energy_pieces(pieces)
   {
-    for (unsigned int k = 0; k < minimum.size(); ++k)
+    for (unsigned int k = 0; k < energy_pieces.size(); ++k)
       {
-        const PiecewiseEnergy::Piece &piece = minimum[k];
+        const PiecewiseEnergy::Piece &piece = energy_pieces[k];
         // A law pulls at all s < 0. The derivative of a piece is monotone, so
         // that its ends say it; of the last piece any point further down does.
         const double lower =
@@ -43,9 +43,9 @@ namespace Debond
                         const Number &number) const
   {
     // Without a memory there is no piece to be made.
-    return reached != 0. ? number(minimum.piece_at(s, reached)) :
+    return reached != 0. ? number(energy_pieces.piece_at(s, reached)) :
            s > 0.        ? 0. :
-                           number(minimum[minimum.index(s)]);
+                           number(energy_pieces[energy_pieces.index(s)]);
   }
 
 
@@ -74,8 +74,9 @@ namespace Debond
   AdhesiveLaw::curvature(const double s, const double reached) const
   {
     // Above 0 there is no law unless bonds have been stretched before.
-    return s > 0. && reached == 0. ? 0. :
-                                     minimum.majorant_curvature(s, reached);
+    return s > 0. && reached == 0. ?
+             0. :
+             energy_pieces.majorant_curvature(s, reached);
   }
 
 
@@ -99,12 +100,12 @@ namespace Debond
     // between the derivatives of both pieces. At s = 0 the other side is (10)
     // above 0, which is zero; bonds with a memory are springs there, without a
     // kink.
-    const PiecewiseEnergy::Piece piece = minimum.piece_at(s, reached);
+    const PiecewiseEnergy::Piece piece = energy_pieces.piece_at(s, reached);
     const double                 force = piece.derivative(s);
     // The other side, if s is a kink.
     const double other =
       s == 0. && reached == 0. ? 0. :
-      s == piece.lower         ? minimum[piece.number + 1].derivative(s) :
+      s == piece.lower         ? energy_pieces[piece.number + 1].derivative(s) :
                                  force;
     return {std::min(force, other), std::max(force, other)};
   }
@@ -119,7 +120,7 @@ namespace Debond
     if (s + delta < 0.)
       {
         // All on one piece, whose derivative is monotone.
-        const PiecewiseEnergy::Piece piece = minimum.piece_at(s, reached);
+        const PiecewiseEnergy::Piece piece = energy_pieces.piece_at(s, reached);
         if (piece.lower < s - delta && s + delta < piece.upper)
           {
             const double a = piece.derivative(s - delta),
@@ -158,8 +159,8 @@ namespace Debond
   {
     // The secant stiffness at reached beside that at 0; bonds that are rigid at
     // first lose traction in place of stiffness.
-    const PiecewiseEnergy::Piece first = minimum[0];
-    const double pull = minimum.piece_at(reached, 0.).derivative(reached);
+    const PiecewiseEnergy::Piece first = energy_pieces[0];
+    const double pull = energy_pieces.piece_at(reached, 0.).derivative(reached);
     if (!(reached < 0.) || first.is_flat())
       return 0.;
     // A curve may also become stiffer before it drops, which is no negative
@@ -179,8 +180,8 @@ namespace Debond
     std::vector<double> result;
     // From the last piece upwards; at 0 there is a kink if bonds pull or are
     // stiff there, for above it there is nothing.
-    for (unsigned int k = minimum.size() - 1; k > 0; --k)
-      result.push_back(minimum[k].upper);
+    for (unsigned int k = energy_pieces.size() - 1; k > 0; --k)
+      result.push_back(energy_pieces[k].upper);
     if (!is_loose(0))
       result.push_back(0.);
     return result;
@@ -191,7 +192,7 @@ namespace Debond
   double
   AdhesiveLaw::bond_threshold() const
   {
-    return std::abs(minimum[minimum.size() - 1].upper);
+    return std::abs(energy_pieces[energy_pieces.size() - 1].upper);
   }
 
 
@@ -199,8 +200,9 @@ namespace Debond
   double
   AdhesiveLaw::broken_beyond() const
   {
-    const PiecewiseEnergy::Piece &last = minimum[minimum.size() - 1];
-    double                        end  = bond_threshold();
+    const PiecewiseEnergy::Piece &last =
+      energy_pieces[energy_pieces.size() - 1];
+    double end = bond_threshold();
     if (last.decay == 0.)
       return last.is_flat() ? end : infinity;
     // Damage grows with the opening there, and is 1 but for rounding after 40

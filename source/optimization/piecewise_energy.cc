@@ -311,11 +311,11 @@ namespace Debond
 
 
   PiecewiseEnergy
-  PiecewiseEnergy::scaled(const double energy, const double stretch) const
+  PiecewiseEnergy::scaled(const double energy, const double length) const
   {
     if (energy == 0.)
       return PiecewiseEnergy::zero();
-    // Curvatures scale by energy / stretch^2 and slopes by energy / stretch;
+    // Curvatures scale by energy / length^2 and slopes by energy / length;
     // whether a piece is above the others does not change. The constants are
     // made anew, as the function has to be continuous at kinks that have been
     // rounded.
@@ -323,12 +323,12 @@ namespace Debond
     result.pieces = pieces;
     for (Piece &piece : result.pieces)
       {
-        piece.curvature *= energy / (stretch * stretch);
-        piece.slope *= energy / stretch;
-        piece.decay /= stretch;
-        piece.begin *= stretch;
-        piece.lower *= stretch;
-        piece.upper *= stretch;
+        piece.curvature *= energy / (length * length);
+        piece.slope *= energy / length;
+        piece.decay /= length;
+        piece.begin *= length;
+        piece.lower *= length;
+        piece.upper *= length;
       }
     result.connect();
     return result;

@@ -30,7 +30,7 @@ namespace Debond
           this->bonds[i].least = f.size() - 1;
         segments.push_back(s(i) < 0. ?
                              2 * std::max(this->bonds[i].least,
-                                          f.index(s(i) / bonds[i].stretch)) +
+                                          f.index(s(i) / bonds[i].length)) +
                                1 :
                              0);
       }
@@ -43,7 +43,7 @@ namespace Debond
   {
     // At the end of the piece towards 0 for contact, at the kink else.
     const double at = segments[i] == 0 ? 0. : f[(segments[i] - 1) / 2].lower;
-    return bonds[i].energy / bonds[i].stretch * f[k].derivative(at);
+    return bonds[i].energy / bonds[i].length * f[k].derivative(at);
   }
 
 
@@ -60,8 +60,8 @@ namespace Debond
       return opens ? r(i) - derivative(i, bond.least) : infinity;
     const unsigned int k = (segments[i] - 1) / 2;
     if (is_free(i))
-      return opens ? s(i) - bond.stretch * f[k].lower :
-                     (k == bond.least ? 0. : bond.stretch * f[k].upper) - s(i);
+      return opens ? s(i) - bond.length * f[k].lower :
+                     (k == bond.least ? 0. : bond.length * f[k].upper) - s(i);
     return opens ? derivative(i, k + 1) - r(i) : r(i) - derivative(i, k);
   }
 
@@ -74,7 +74,7 @@ namespace Debond
     if (segments[i] == 0)
       s(i) = 0.;
     else if (!is_free(i))
-      s(i) = bonds[i].stretch * f[(segments[i] - 1) / 2].lower;
+      s(i) = bonds[i].length * f[(segments[i] - 1) / 2].lower;
   }
 
 
@@ -109,7 +109,7 @@ namespace Debond
   StationaryPath::stiffness(const unsigned int i) const
   {
     const Bond &bond = bonds[i];
-    return S(i, i) + bond.energy / (bond.stretch * bond.stretch) *
+    return S(i, i) + bond.energy / (bond.length * bond.length) *
                        f[(segments[i] - 1) / 2].curvature;
   }
 
@@ -227,7 +227,7 @@ namespace Debond
         // right side.
         const Bond &bond = bonds[free[k]];
         point(k) -=
-          bond.energy / bond.stretch * f[(segments[free[k]] - 1) / 2].slope;
+          bond.energy / bond.length * f[(segments[free[k]] - 1) / 2].slope;
       }
     solve_free(speeds);
     solve_free(point);
@@ -350,7 +350,7 @@ namespace Debond
     Eigen::VectorXd result = s;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (segments[i] > 0 && !is_free(i))
-        result(i) = bonds[i].stretch * f.point_inside((segments[i] - 1) / 2);
+        result(i) = bonds[i].length * f.point_inside((segments[i] - 1) / 2);
     return result;
   }
 } // namespace Debond

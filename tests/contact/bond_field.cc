@@ -107,12 +107,12 @@ main(int argc, char **)
                  G = (length_1 * a_1 * M_1 * M_1 + length_2 * a_2 * M_2 * M_2) /
                      3.;
     check("threshold where they meet",
-          relative(bonds.stretch * M_1, std::sqrt(2. * G / a)),
+          relative(bonds.length * M_1, std::sqrt(2. * G / a)),
           1e-14);
     check("which is the faces'",
-          phi.points().list()[1].bonds.stretch == bonds.stretch);
+          phi.points().list()[1].bonds.length == bonds.length);
     check("the second one's alone",
-          relative(phi.points().bonds_at(2).stretch * M_1, M_2),
+          relative(phi.points().bonds_at(2).length * M_1, M_2),
           1e-14);
   }
   {

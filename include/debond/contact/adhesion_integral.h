@@ -13,8 +13,8 @@ namespace Debond
   /// all empty if bonds return.
   struct BondMemory
   {
-    /// The least stretch that they have been at: what is above it does not come
-    /// back.
+    /// The least scaled displacement that they have been at: what is above it
+    /// does not come back.
     std::vector<double> reached = {};
 
     /// Where their fracture energy depends on the mode, what it has been
@@ -154,7 +154,7 @@ namespace Debond
       return law.pieces().index(reached(node));
     }
 
-    /// Calls @p visit(point, stretch, reached) for all points: sums over them
+    /// Calls @p visit(point, scaled, reached) for all points: sums over them
     /// are made of it.
     template <typename Visit>
     void
@@ -164,13 +164,13 @@ namespace Debond
         {
           const ContactPoint<dim> &point = contact_points.list()[q];
           visit(point,
-                point.stretch(s),
+                point.scaled_displacement(s),
                 broken.empty() ? 0. : broken.reached[q]);
         }
     }
 
     /// The second derivative of Phi at @p s if that of the law is @p of_law
-    /// (stretch, reached), and where bonds shear @p across (stretch, reached)
+    /// (scaled, reached), and where bonds shear @p across (scaled, reached)
     /// in directions in which they open no further: a matrix that couples the
     /// nodes of a face, and for nodal quadrature no nodes.
     template <typename Curvature, typename Across>
@@ -180,16 +180,16 @@ namespace Debond
            const Across     &across) const
     {
       std::vector<Eigen::Triplet<double>> entries;
-      for_each_point(s, [&](const auto &point, double stretch, double reached) {
+      for_each_point(s, [&](const auto &point, double scaled, double reached) {
         const double curvature =
-          point.force() / point.bonds.stretch * of_law(stretch, reached);
+          point.force_factor() / point.bonds.length * of_law(scaled, reached);
         if (point.shears())
           {
             add_in_all_directions(point,
                                   point.jump(s),
                                   curvature,
-                                  point.force() / point.bonds.stretch *
-                                    across(stretch, reached),
+                                  point.force_factor() / point.bonds.length *
+                                    across(scaled, reached),
                                   entries);
             return;
           }
@@ -286,11 +286,11 @@ namespace Debond
     BondMemory
     memory_with_modes() const;
 
-    /// Returns whether bonds at @p stretch bear enough to have a mode.
+    /// Returns whether bonds at @p scaled bear enough to have a mode.
     bool
-    bears(const double stretch) const
+    bears(const double scaled) const
     {
-      return stretch < Tolerance::bears_nothing * law.pieces()[0].lower;
+      return scaled < Tolerance::bears_nothing * law.pieces()[0].lower;
     }
 
     /// Adds the second derivative of a function of the opening of @p point at

@@ -44,7 +44,7 @@ namespace Debond
   shear_damage(const AdhesionIntegral<dim> &phi, const VectorView &s);
 
   /// Returns whether at some point the traction drops within @p part of its
-  /// stretch.
+  /// displacement.
   template <int dim>
   bool
   is_at_drop(const AdhesionIntegral<dim> &phi,
@@ -52,7 +52,7 @@ namespace Debond
              const double                 part);
 
   /// The second derivative of Phi with the least one of each point within
-  /// @p part of its stretch: a bound where bonds are next to a kink.
+  /// @p part of its displacement: a bound where bonds are next to a kink.
   template <int dim>
   Eigen::SparseMatrix<double>
   least_second_derivative(const AdhesionIntegral<dim> &phi,

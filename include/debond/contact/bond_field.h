@@ -17,12 +17,12 @@
 
 namespace Debond
 {
-  /// The bonds of a point: j_1(s) = energy j(s / stretch), j being a law that
+  /// The bonds of a point: j_1(s) = energy j(s / length), j being a law that
   /// holds everywhere.
   struct BondScale
   {
-    double energy  = 1.;
-    double stretch = 1.;
+    double energy = 1.;
+    double length = 1.;
 
     /// The stiffness in shear over that along the normal: bonds have the
     /// opening sqrt(p^2 + shear |t|^2), with p that along the normal and t the
@@ -37,7 +37,7 @@ namespace Debond
     in_shear() const
     {
       return {shear_energy,
-              stretch * std::sqrt(shear_energy / (shear * energy)),
+              length * std::sqrt(shear_energy / (shear * energy)),
               1.};
     }
 
@@ -46,7 +46,7 @@ namespace Debond
     toughen(const double factor)
     {
       energy *= factor;
-      stretch *= std::sqrt(factor);
+      length *= std::sqrt(factor);
     }
   };
 

@@ -101,18 +101,18 @@ namespace Debond
     }
 
     /// Minus the opening in terms of the law, which is that of bonds of unit
-    /// stretch.
+    /// length.
     double
-    stretch(const VectorView &s) const
+    scaled_displacement(const VectorView &s) const
     {
-      return shears() ? stretch_at(jump(s)) :
-                        normal_displacement(s) / bonds.stretch;
+      return shears() ? scaled_displacement(jump(s)) :
+                        normal_displacement(s) / bonds.length;
     }
 
     double
-    stretch_at(const Jump<dim> &jump) const
+    scaled_displacement(const Jump<dim> &jump) const
     {
-      return -std::sqrt(jump.product(jump, bonds.shear)) / bonds.stretch;
+      return -std::sqrt(jump.product(jump, bonds.shear)) / bonds.length;
     }
 
     /// Calls @p visit (unknown, derivative of the jump by it) for all unknowns
@@ -129,9 +129,9 @@ namespace Debond
 
     /// The factor of the law's derivative in forces.
     double
-    force() const
+    force_factor() const
     {
-      return weight * bonds.energy / bonds.stretch;
+      return weight * bonds.energy / bonds.length;
     }
   };
 
@@ -264,8 +264,9 @@ namespace Debond
             const VectorView  &s) const
     {
       const ContactPoint<dim> point = point_at(face, place);
-      return point.shears() ? -point.bonds.stretch * point.stretch(s) :
-                              -trace(face, place, s);
+      return point.shears() ?
+               -point.bonds.length * point.scaled_displacement(s) :
+               -trace(face, place, s);
     }
 
   private:

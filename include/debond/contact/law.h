@@ -76,7 +76,7 @@ namespace Debond
     bool
     softens() const
     {
-      return minimum.softens();
+      return energy_pieces.softens();
     }
 
     /// Returns the places where j_1 is not twice differentiable, in ascending
@@ -88,7 +88,7 @@ namespace Debond
     const PiecewiseEnergy &
     pieces() const
     {
-      return minimum;
+      return energy_pieces;
     }
 
     /// The name of bonds on a piece of pieces().
@@ -102,7 +102,7 @@ namespace Debond
     bool
     is_loose(const unsigned int piece) const
     {
-      return minimum[piece].is_flat();
+      return energy_pieces[piece].is_flat();
     }
 
     /// The displacement below which bonds are on the last piece, as a positive
@@ -127,7 +127,7 @@ namespace Debond
     double
     on_piece(const double s, const double reached, const Number &number) const;
 
-    PiecewiseEnergy          minimum;
+    PiecewiseEnergy          energy_pieces;
     std::vector<std::string> names;
   };
 

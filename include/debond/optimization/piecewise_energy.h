@@ -134,9 +134,9 @@ namespace Debond
     bool
     has_drop(const unsigned int piece) const;
 
-    /// energy f(s / stretch); the single piece zero without energy.
+    /// energy f(s / length); the single piece zero without energy.
     PiecewiseEnergy
-    scaled(const double energy, const double stretch = 1.) const;
+    scaled(const double energy, const double length = 1.) const;
 
     unsigned int
     size() const

@@ -37,9 +37,9 @@ namespace Debond
   public:
     struct Bond
     {
-      double       energy;  ///< w_i
-      double       stretch; ///< l_i
-      unsigned int least;   ///< pieces of f before this one do not return
+      double       energy; ///< w_i
+      double       length; ///< l_i
+      unsigned int least;  ///< pieces of f before this one do not return
     };
 
     /// The functional whose stationary points are followed, with g(t) = load +

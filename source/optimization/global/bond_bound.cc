@@ -70,12 +70,12 @@ namespace Debond
         // parabola, a line that touches both or meets the second one at R, and
         // a parabola again. One about 0 that touches the envelope is above it.
         const Eigen::VectorXd R =
-          phi.stretches(node.lower.head(n).cwiseAbs().cwiseMax(
+          phi.displacements(node.lower.head(n).cwiseAbs().cwiseMax(
             node.upper.head(n).cwiseAbs()));
         ActiveSet active(n, 0);
         for (unsigned int step = 0; step < reweightings; ++step)
           {
-            const Eigen::VectorXd l = phi.stretches(node.x);
+            const Eigen::VectorXd l = phi.displacements(node.x);
             Eigen::MatrixXd       M = A;
             for (unsigned int j = 0; j < n; ++j)
               if (k(j) > 0.)
@@ -119,7 +119,7 @@ namespace Debond
                               error = Tolerance::epsilon *
                                         (r.cwiseAbs() + g.cwiseAbs()) +
                                       (tiny * terms).cast<double>(),
-                              l = phi.stretches(node.x);
+                              l = phi.displacements(node.x);
         double size             = static_cast<double>(x.dot(Ax));
         bounds.resize(phi.f.size(), 3);
         for (unsigned int i = 0; i < phi.f.size(); ++i)
@@ -223,7 +223,7 @@ namespace Debond
     // As in NodeBound::bound_at(): a function of l is nowhere below its tangent
     // plane if it is not below the tangent in the direction of z.
     const Eigen::VectorXd before = relaxation.A.diagonal(),
-                          l      = phi.stretches(z);
+                          l      = phi.displacements(z);
     for (unsigned int j = 0; j < n; ++j)
       relaxation.A(j, j) -=
         (1. + Tolerance::excess_at_point) * phi.weights(j) *
@@ -279,7 +279,7 @@ namespace Debond
         // The point of the box that is nearest to 0, in each unknown: if even
         // there a bond is stretched beyond its threshold, it is broken in the
         // whole box.
-        const Eigen::VectorXd nearest = phi.stretches(
+        const Eigen::VectorXd nearest = phi.displacements(
           node.lower.head(n).cwiseMax(-node.upper.head(n)).cwiseMax(0.));
         const Eigen::MatrixXd &bounds  = relaxation.bounds;
         double                 highest = -infinity;

@@ -166,7 +166,7 @@ namespace Debond
           return false;
         for (const PieceMove &move :
              moves_by_stretch(problem.lumped.state(point),
-                              problem.lumped.stretches(point),
+                              problem.lumped.displacements(point),
                               n_pieces))
           if (!may_go_on())
             return false;
@@ -203,15 +203,15 @@ namespace Debond
         // minimise takes them to a minimum that has them there, if there is
         // one.
         Eigen::VectorXd       next = point;
-        const Eigen::VectorXd l    = problem.lumped.stretches(point);
+        const Eigen::VectorXd l    = problem.lumped.displacements(point);
         // Where there are no bonds no piece is to be left.
         for (const unsigned int i : move.down)
           if (move.piece < f[i].size())
-            problem.lumped.set_stretch(
+            problem.lumped.set_displacement(
               i, std::min(l(i), f[i].point_inside(move.piece)), next);
         for (const unsigned int i : move.up)
           if (move.piece < f[i].size())
-            problem.lumped.set_stretch(
+            problem.lumped.set_displacement(
               i, std::max(l(i), f[i].point_inside(move.piece - 1)), next);
         next = next.cwiseMin(problem.upper);
         // A state that has been tried leads where it led before.
@@ -468,15 +468,15 @@ namespace Debond
   SeparableEnergy
   lumped_energy(const PiecewiseEnergy     &pieces,
                 const Eigen::VectorXd     &weights,
-                const std::vector<double> &stretches)
+                const std::vector<double> &lengths)
   {
     std::vector<PiecewiseEnergy> f;
     for (unsigned int i = 0; i < weights.size(); ++i)
       {
         // weights[i] is the factor of the second derivative, which is that of
-        // the energy over the square of the stretch.
-        const double stretch = stretches.empty() ? 1. : stretches[i];
-        f.push_back(pieces.scaled(weights(i) * stretch * stretch, stretch));
+        // the energy over the square of the length.
+        const double length = lengths.empty() ? 1. : lengths[i];
+        f.push_back(pieces.scaled(weights(i) * length * length, length));
       }
     return SeparableEnergy(f);
   }

@@ -4,7 +4,7 @@
 namespace Debond
 {
   Eigen::VectorXd
-  SeparableEnergy::stretches(const VectorView &s) const
+  SeparableEnergy::displacements(const VectorView &s) const
   {
     if (bonds.empty())
       return s;
@@ -17,22 +17,28 @@ namespace Debond
 
 
   void
-  SeparableEnergy::set_stretch(const unsigned int i,
-                               const double       stretch,
-                               Eigen::VectorXd   &s) const
+  SeparableEnergy::set_displacement(const unsigned int i,
+                                    const double       displacement,
+                                    Eigen::VectorXd   &s) const
   {
     if (bonds.empty())
       {
-        s(i) = stretch;
+        s(i) = displacement;
         return;
       }
     // A bond that is stretched keeps the direction of its jump; one at rest has
     // none.
-    const double before = stretches(s)(i);
+    const double before  = displacements(s)(i);
+    bool         is_done = false;
     for (unsigned int j = 0; j < s.size(); ++j)
       if (bonds[j] == i)
-        s(j) = before < 0. ? s(j) * stretch / before :
-                             stretch / std::sqrt(weights(j));
+        {
+          if (before < 0.)
+            s(j) *= displacement / before;
+          else
+            s(j) = is_done ? 0. : displacement / std::sqrt(weights(j));
+          is_done = true;
+        }
   }
 
 
@@ -40,7 +46,7 @@ namespace Debond
   PieceState
   SeparableEnergy::state(const VectorView &s) const
   {
-    const Eigen::VectorXd l = stretches(s);
+    const Eigen::VectorXd l = displacements(s);
     PieceState            result(l.size());
     for (unsigned int i = 0; i < l.size(); ++i)
       result[i] = piece(i, l).number;
@@ -54,7 +60,7 @@ namespace Debond
   {
     // With nodal quadrature Phi is a sum of functions of one component each, so
     // that pieces, derivatives and bounds are those of single bonds.
-    const Eigen::VectorXd l   = stretches(s);
+    const Eigen::VectorXd l   = displacements(s);
     double                sum = 0.;
     for (unsigned int i = 0; i < l.size(); ++i)
       sum += piece(i, l).value(l(i));
@@ -82,7 +88,7 @@ namespace Debond
   {
     // Entries that are zero are left out, as broken bonds are many and products
     // with them take time.
-    const Eigen::VectorXd       l = stretches(s);
+    const Eigen::VectorXd       l = displacements(s);
     Eigen::SparseMatrix<double> result(s.size(), s.size());
     for (unsigned int j = 0; j < s.size(); ++j)
       {
@@ -109,7 +115,7 @@ namespace Debond
   SeparableEnergy::is_piecewise_quadratic() const
   {
     // With a slope a piece is no quadratic in the unknowns of a bond, of which
-    // the stretch is a square root.
+    // that displacement is a square root.
     return std::all_of(f.begin(), f.end(), [&](const PiecewiseEnergy &f_i) {
       const bool is_spring = f_i.size() <= 2 && f_i[0].slope == 0. &&
                              (f_i.size() == 1 || f_i[1].is_flat());

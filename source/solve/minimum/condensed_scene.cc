@@ -20,7 +20,7 @@ namespace Debond
       {
         const BondScale scale = integral.points().bonds_at(i);
         bonds_of_nodes.push_back({nodes[i].measure * scale.energy,
-                                  scale.stretch,
+                                  scale.length,
                                   integral.least_piece(i)});
       }
     return {condensed.schur_complement(),

@@ -16,8 +16,8 @@ namespace Debond
       return {};
     Eigen::VectorXd mean(adhesion.n_nodes());
     for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
-      mean(i) = adhesion.points().bonds_at(i).stretch;
-    // A coarse bond stands for the fine ones below it; its stretch is their
+      mean(i) = adhesion.points().bonds_at(i).length;
+    // A coarse bond stands for the fine ones below it; its length is their
     // mean, weighted by the entries of P, which are not negative.
     for (const Eigen::SparseMatrix<double> &P : prolongations)
       mean = (P.transpose() * mean)
@@ -56,10 +56,10 @@ namespace Debond
               {
                 is_first = false;
                 bond = static_cast<unsigned int>(result.f.size());
-                result.f.push_back(
-                  pieces.scaled(weights(tangent.index) * bonds.stretch *
-                                  bonds.stretch / bonds.shear,
-                                bonds.stretch));
+                result.f.push_back(pieces.scaled(weights(tangent.index) *
+                                                   bonds.length * bonds.length /
+                                                   bonds.shear,
+                                                 bonds.length));
                 graph.emplace_back();
               }
             result.bonds[tangent.index] = bond;

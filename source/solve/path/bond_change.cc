@@ -48,14 +48,14 @@ namespace Debond
       for (unsigned int i = 0; i < last.s.size(); ++i)
         if (last.s(i) < 0.)
           {
-            const double       stretch = bonds.points().bonds_at(i).stretch;
-            const unsigned int k = std::max(branches.index(last.s(i) / stretch),
+            const double       length = bonds.points().bonds_at(i).length;
+            const unsigned int k = std::max(branches.index(last.s(i) / length),
                                             bonds.least_piece(i));
             if (increases ? k + 1 == branches.size() :
                             k <= bonds.least_piece(i))
               continue;
             const double reached =
-              stretch * (increases ? branches[k].lower : branches[k].upper) /
+              length * (increases ? branches[k].lower : branches[k].upper) /
               last.s(i);
             if (increases ? reached < first : reached > first)
               {

@@ -88,13 +88,13 @@ namespace Debond
 
 
 
-  /// Each unknown has @p pieces with its @p stretches and @p weights[i]
+  /// Each unknown has @p pieces with its @p lengths and @p weights[i]
   /// times their second derivative; with those of Phi this is Phi itself if
   /// each unknown has a multiple of them for its own.
   SeparableEnergy
   lumped_energy(const PiecewiseEnergy     &pieces,
                 const Eigen::VectorXd     &weights,
-                const std::vector<double> &stretches = {});
+                const std::vector<double> &lengths = {});
 
 
 

@@ -51,7 +51,7 @@ namespace Debond
 
   /**
    * Moves of nodes that need not be neighbours, for each kink: of the nodes
-   * below it the 1, 2, 4, ... with the least stretch @p s go up, of those
+   * below it the 1, 2, 4, ... with the least displacement @p s go up, of those
    * above it the 1, 2, 4, ... most stretched go down. Bonds that bridge a gap
    * hold only together, which no move of an edge finds.
    *

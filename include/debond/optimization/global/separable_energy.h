@@ -13,9 +13,9 @@ namespace Debond
 
 
   /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own. With @p bonds
-  /// it is sum_i f_i(l_i) with the stretches of bonds that each have some of
-  /// the unknowns; then its values and derivatives are those of laws that are
-  /// is_piecewise_quadratic().
+  /// it is sum_i f_i(l_i) with the displacements of bonds that each have some
+  /// of the unknowns; then its values and derivatives are those of laws that
+  /// are is_piecewise_quadratic().
   struct SeparableEnergy : public PiecewiseQuadratic
   {
     std::vector<PiecewiseEnergy> f;
@@ -31,16 +31,16 @@ namespace Debond
 
     /// What f_i is a function of: s itself without bonds.
     Eigen::VectorXd
-    stretches(const VectorView &s) const;
+    displacements(const VectorView &s) const;
 
-    /// Gives bond i a stretch: its unknowns keep their ratios or, if all are
-    /// zero, the first of them takes it.
+    /// Gives bond i a displacement: its unknowns keep their ratios or, if all
+    /// are zero, the first of them takes it.
     void
-    set_stretch(const unsigned int i,
-                const double       stretch,
-                Eigen::VectorXd   &s) const;
+    set_displacement(const unsigned int i,
+                     const double       displacement,
+                     Eigen::VectorXd   &s) const;
 
-    /// The piece that bond i is on at the stretches @p l.
+    /// The piece that bond i is on at the displacements @p l.
     const PiecewiseEnergy::Piece &
     piece(const unsigned int i, const VectorView &l) const
     {
