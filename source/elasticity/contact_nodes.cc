@@ -489,18 +489,22 @@ namespace Debond
            no_node}};
         if (const auto *of_pair = node_supports.supports_of_pair(index))
           supports = *of_pair;
+        // At the end of an interface both bodies are one node, whose
+        // displacement opens nothing.
+        const dealii::Tensor<1, dim> jump =
+          node_supports.is_end_of_interface(index) ? dealii::Tensor<1, dim>() :
+                                                     prescribed.displacement();
         for (unsigned int k = 0; k < normals.size(); ++k)
           if (vertex.nodes[k] == no_node)
             {
               vertex.held[k] =
                 static_cast<unsigned int>(boundary.held_vertices.size());
-              boundary.held_vertices.push_back(
-                {prescribed.displacement() * normals[k],
-                 gaps[k],
-                 supports[0],
-                 normals[k],
-                 vertex.position,
-                 supports[1]});
+              boundary.held_vertices.push_back({jump * normals[k],
+                                                gaps[k],
+                                                supports[0],
+                                                normals[k],
+                                                vertex.position,
+                                                supports[1]});
             }
         if (!unknown.empty())
           constrained.add_frame(prescribed,

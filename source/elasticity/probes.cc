@@ -76,13 +76,12 @@ namespace Debond
 
 
 
-    /// Adds the integrals over a cell or a face, of nodes that are wanted.
-    template <typename Values, typename IsWanted>
+    /// Adds the integrals over a cell or a face, of its nodes.
+    template <typename Values>
     void
     add_integrals(const Values                                       &fe_values,
                   const std::vector<dealii::types::global_dof_index> &dofs,
                   const Symmetry                                      symmetry,
-                  const IsWanted                                     &is_wanted,
                   Weights                                            &weights)
     {
       // The weight of a node is int phi_k over the piece, around an axis with
@@ -90,11 +89,18 @@ namespace Debond
       // the piece.
       constexpr unsigned int dim = Values::dimension;
       for (unsigned int i = 0; i < dofs.size(); i += dim)
-        if (is_wanted(i))
+        {
+          // Nodes of the cell that are not on the face have values of rounding
+          // there, and no part in the forces on it.
+          double largest = 0.;
           for (const unsigned int q : fe_values.quadrature_point_indices())
-            weights[dofs[i]] +=
-              fe_values.JxW(q) * fe_values.shape_value(i, q) *
-              circumference(symmetry, fe_values.quadrature_point(q));
+            largest = std::max(largest, std::abs(fe_values.shape_value(i, q)));
+          if (largest > Tolerance::decimals)
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              weights[dofs[i]] +=
+                fe_values.JxW(q) * fe_values.shape_value(i, q) *
+                circumference(symmetry, fe_values.quadrature_point(q));
+        }
     }
 
 
@@ -128,14 +134,7 @@ namespace Debond
                 {
                   fe_values.reinit(cell, f);
                   cell->get_dof_indices(dofs);
-                  add_integrals(
-                    fe_values,
-                    dofs,
-                    symmetry,
-                    [&](const unsigned int i) {
-                      return fe.has_support_on_face(i, f);
-                    },
-                    weights);
+                  add_integrals(fe_values, dofs, symmetry, weights);
                 }
           return sum(weights, unknowns.communicator());
         }
@@ -149,12 +148,7 @@ namespace Debond
           {
             fe_values.reinit(cell);
             cell->get_dof_indices(dofs);
-            add_integrals(
-              fe_values,
-              dofs,
-              symmetry,
-              [](const unsigned int) { return true; },
-              weights);
+            add_integrals(fe_values, dofs, symmetry, weights);
           }
       return sum(weights, unknowns.communicator());
     }
