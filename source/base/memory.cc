@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/infinity.h>
 #include <debond/base/memory.h>
 #include <debond/base/processes.h>
 #include <debond/base/text.h>
@@ -40,7 +41,7 @@ namespace Debond
       double        value = 0.;
       while (!label.empty() && file >> word && word != label)
         ;
-      return file >> value ? value : std::numeric_limits<double>::infinity();
+      return file >> value ? value : infinity;
     }
   } // namespace
 
@@ -77,15 +78,18 @@ namespace Debond
     double left = 1024. * read_limit("/proc/meminfo", "MemAvailable:");
     // MemAvailable is what the kernel would give without swapping. A container
     // sees that of the whole machine, and its own limit is in one of these
-    // files, depending on the version of its control groups.
+    // files, depending on the version of its control groups. Of limits what the
+    // process has already counts.
     for (const char *file : {"/sys/fs/cgroup/memory.max",
                              "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
-      left = std::min(left, read_limit(file, ""));
+      left = std::min(left, read_limit(file, "") - used_memory());
     rlimit address_space;
     if (getrlimit(RLIMIT_AS, &address_space) == 0 &&
         address_space.rlim_cur != RLIM_INFINITY)
-      left = std::min(left, static_cast<double>(address_space.rlim_cur));
-    return least_of_ranks(left);
+      left = std::min(left,
+                      static_cast<double>(address_space.rlim_cur) -
+                        1024. * memory_of_process().VmSize);
+    return least_of_ranks(std::max(0., left));
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/global_bound.h>
 #include <debond/certify/side_ranges.h>
@@ -189,7 +190,7 @@ namespace Debond
       known.nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?
-          -std::numeric_limits<double>::infinity() :
+          -infinity :
           problem->constant + bound.lower - problem->rounding;
       // Where the finite problem is least, the eliminated means and slopes
       // follow from the kept means.
@@ -222,7 +223,7 @@ namespace Debond
       // where it is least.
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
-      double best_lower = -std::numeric_limits<double>::infinity();
+      double                             best_lower = -infinity;
       // D is at most 2 a at first. If that proof does not end, larger ones are
       // tried, which round the law less but make the triangles softer, and the
       // better bound is taken. As long as there is none, a proof may take all

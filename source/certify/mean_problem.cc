@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/convex_envelope.h>
@@ -165,7 +166,7 @@ namespace Debond
         const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
-        double       least    = std::numeric_limits<double>::infinity();
+        double       least    = infinity;
         // D grows by factors, up to what the triangle has. It ends once the
         // piece is certain, as more would only cost stiffness.
         for (double D = best; D < available(i); D *= 1.2)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/check/law_violation.h>
 
@@ -82,8 +83,7 @@ namespace Debond
   Interval
   unbounded_above_if(const bool contact, const Interval &interval)
   {
-    return {interval.lower,
-            contact ? std::numeric_limits<double>::infinity() : interval.upper};
+    return {interval.lower, contact ? infinity : interval.upper};
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_tools.h>
 
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
@@ -45,9 +46,8 @@ namespace Debond
   faces_in_softening_zone(const ElasticProblem<dim>   &problem,
                           const AdhesionIntegral<dim> &adhesion)
   {
-    constexpr double   infinity = std::numeric_limits<double>::infinity();
-    const AdhesiveLaw &law      = adhesion.adhesive_law();
-    const double       energy   = law.pieces().largest_value();
+    const AdhesiveLaw &law    = adhesion.adhesive_law();
+    const double       energy = law.pieces().largest_value();
     if (!law.softens() || !std::isfinite(energy))
       return infinity;
 
@@ -136,7 +136,7 @@ namespace Debond
   bond_notes(const dealii::Triangulation<dim>    &body,
              const std::vector<ContactNodeState> &nodes)
   {
-    double least_threshold = std::numeric_limits<double>::infinity();
+    double least_threshold = infinity;
     bool   are_all_broken  = true;
     for (const ContactNodeState &node : nodes)
       if (node.branch != BondState::free)
@@ -154,7 +154,7 @@ namespace Debond
               "threshold"};
     // Each rank has the box of its own cells.
     const auto box  = dealii::GridTools::compute_bounding_box(body);
-    double     size = std::numeric_limits<double>::infinity();
+    double     size = infinity;
     for (unsigned int d = 0; d < dim; ++d)
       size = std::min(size,
                       dealii::Utilities::MPI::max(box.upper_bound(d),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/force_balance.h>
@@ -14,11 +15,11 @@ namespace Debond
     // Were all forces rounding, they would balance whatever u is. The
     // comparisons of std::max would lose a NaN.
     if (!(force_rounding <= Tolerance::force_rounding))
-      return std::numeric_limits<double>::infinity();
+      return infinity;
     return std::isfinite(equilibrium_residual + force_imbalance +
                          law_violation) ?
              std::max({equilibrium_residual, force_imbalance, law_violation}) :
-             std::numeric_limits<double>::infinity();
+             infinity;
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
@@ -362,8 +363,7 @@ namespace Debond
         // A vertex has one gap for each of its normals. Where boundaries with
         // different gaps meet, the least one holds: the vertex must not enter
         // either of the foundations.
-        std::vector<double> gaps(n_groups,
-                                 std::numeric_limits<double>::infinity());
+        std::vector<double> gaps(n_groups, infinity);
         for (unsigned int k = 0; k < vertex.gaps.size(); ++k)
           gaps[vertex.groups[k]] =
             std::min(gaps[vertex.groups[k]], vertex.gaps[k]);

@@ -4,6 +4,7 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/physics/transformations.h>
 
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/mesh/box.h>
 
@@ -29,7 +30,7 @@ namespace Debond
     double
     stretch(const BoxParameters &box)
     {
-      double longest = 0., shortest = std::numeric_limits<double>::infinity();
+      double longest = 0., shortest = infinity;
       for (unsigned int d = 0; d < dim; ++d)
         {
           longest  = std::max(longest, box.lengths[d] / box.cells[d]);
@@ -244,7 +245,7 @@ namespace Debond
   {
     // The shortest side of the cells is sought among the directions that still
     // have several cells, since those of one cell cannot be joined any more.
-    double shortest = std::numeric_limits<double>::infinity();
+    double shortest = infinity;
     for (unsigned int d = 0; d < dim; ++d)
       if (parameters.cells[d] > 1)
         shortest =

@@ -153,49 +153,6 @@ namespace Debond
 
 
 
-    /// Throws std::invalid_argument if edges of this length make more cells
-    /// than there is memory for. A coarse mesh says how large the geometry is.
-    void
-    check_size(const int dim, const MeshingOptions &options)
-    {
-      // Gmsh would run out of memory in the middle of its work if the cells did
-      // not fit, possibly after a long time. Therefore the number of cells is
-      // estimated before: the geometry is meshed coarsely, with edges of a
-      // twentieth of its extent, and its measure is divided by that of a cell
-      // with edges of the wanted size. Edges longer than a 300th of the extent
-      // need no check.
-      const double size = options.size;
-      double       x, y, z, end_x, end_y, end_z;
-      gmsh::model::getBoundingBox(-1, -1, x, y, z, end_x, end_y, end_z);
-      const double length = end_x - x + end_y - y + end_z - z;
-      if (size > length / 300.)
-        return;
-      set_size(length / 20.);
-      gmsh::model::mesh::generate(dim);
-      std::vector<double> matrices, determinants, points;
-      gmsh::model::mesh::getJacobians(
-        dim == 2 ? 2 : 4, {0., 0., 0.}, matrices, determinants, points);
-      gmsh::model::mesh::clear();
-      // The measure of a regular cell with edges h is sqrt(3)/4 h^2 = 0.433 h^2
-      // for a triangle and h^3 / (6 sqrt(2)) = 0.118 h^3 for a tetrahedron.
-      // Each cell takes 1000 bytes and more with its part of the matrix.
-      const double bytes =
-        1000. / (dim == 2 ? 0.433 : 0.118) / std::pow(size, dim);
-      double needed = 0.;
-      for (const double determinant : determinants)
-        // The determinant of the Jacobian is twice the area of a triangle and
-        // six times the volume of a tetrahedron.
-        needed += bytes * std::abs(determinant) / (dim == 2 ? 2. : 6.);
-      if (needed > options.memory)
-        throw std::invalid_argument(words("cells of Mesh/Size take about ",
-                                          in_gib(needed),
-                                          ", and there are ",
-                                          in_gib(options.memory),
-                                          ": make it larger"));
-    }
-
-
-
     /// Adds the elements of an entity. Throws std::invalid_argument if they are
     /// of a kind that is not read.
     void
@@ -328,11 +285,7 @@ namespace Debond
       // The same number as the least and the largest size overrules the sizes
       // at points that a geometry may have.
       if (file.is_geometry && options.size > 0.)
-        {
-          if (file.nodes.empty())
-            check_size(dim, options);
-          set_size(options.size);
-        }
+        set_size(options.size);
       if (file.is_geometry)
         gmsh::model::mesh::generate(dim);
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
@@ -456,7 +409,9 @@ namespace Debond
     if (status != 0)
       throw std::invalid_argument(
         file_name + ": Gmsh crashes on this file, or a memory of " +
-        in_gib(options.memory) + " is not enough for its mesh");
+        in_gib(options.memory) +
+        " is not enough for its mesh, which a larger "
+        "Mesh/Size makes smaller");
     if (bytes.empty())
       throw std::invalid_argument(
         file_name + ": it ends Gmsh before there is a mesh; leave out Exit");

@@ -4,6 +4,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <debond/base/infinity.h>
 #include <debond/optimization/interval.h>
 
 #include <array>
@@ -19,14 +20,11 @@ namespace Debond
     std::array<dealii::Point<2>, 2> ends;
 
     /// The mean of u_nu, which is that of p.
-    Interval mean = {-std::numeric_limits<double>::infinity(), 0.};
+    Interval mean = {-infinity, 0.};
 
     /// p at the ends.
     std::array<Interval, 2> at_ends = {
-      {{-std::numeric_limits<double>::infinity(),
-        std::numeric_limits<double>::infinity()},
-       {-std::numeric_limits<double>::infinity(),
-        std::numeric_limits<double>::infinity()}}};
+      {{-infinity, infinity}, {-infinity, infinity}}};
 
     /// Combines all ranges with those of another side, by hull() or
     /// intersection().

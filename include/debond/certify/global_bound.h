@@ -2,6 +2,7 @@
 #ifndef debond_certify_global_bound_h
 #define debond_certify_global_bound_h
 
+#include <debond/base/infinity.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/branch_and_bound.h>
 
@@ -9,7 +10,7 @@ namespace Debond
 {
   struct GlobalBound
   {
-    double lower = -std::numeric_limits<double>::infinity();
+    double lower = -infinity;
 
     /// The part of it that is a reserve for what elimination may have lost to
     /// rounding.

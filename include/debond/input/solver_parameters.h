@@ -2,6 +2,7 @@
 #ifndef debond_input_solver_parameters_h
 #define debond_input_solver_parameters_h
 
+#include <debond/base/infinity.h>
 #include <debond/base/parameter_table.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_search.h>
@@ -89,7 +90,7 @@ namespace Debond
 
     /// Operations that a search that was not asked for may take
     /// (BoundQPResult::operations).
-    double search_operations = std::numeric_limits<double>::infinity();
+    double search_operations = infinity;
 
     bool                     prove = false;
     BranchAndBoundParameters proof = proof_defaults();

@@ -101,8 +101,8 @@ namespace Debond
       return reduced.energy_of_kept;
     }
 
-    /// An estimate of the condition of S in the 1-norm, of S_+ if A is
-    /// semidefinite; 1 if no unknown is kept.
+    /// An estimate of the condition of S in the 1-norm, of a definite A; 1 if
+    /// no unknown is kept.
     double
     condition_estimate() const
     {

@@ -90,8 +90,8 @@ namespace Debond
                                                S.n());
     }
 
-    /// An estimate of |S_+| |S_+^{-1}| in the 1-norm, by LAPACK; 1 if no
-    /// unknown is kept.
+    /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK, of a definite A; 1
+    /// if no unknown is kept.
     double
     condition_estimate() const;
 

@@ -2,6 +2,8 @@
 #ifndef debond_linear_algebra_stagnation_h
 #define debond_linear_algebra_stagnation_h
 
+#include <debond/base/infinity.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -31,8 +33,8 @@ namespace Debond
     static constexpr unsigned int steps = 100;
 
     unsigned int n_steps = 0;
-    double       least   = std::numeric_limits<double>::infinity();
-    double       before  = std::numeric_limits<double>::infinity();
+    double       least   = infinity;
+    double       before  = infinity;
   };
 } // namespace Debond
 

@@ -2,14 +2,10 @@
 #ifndef debond_optimization_interval_h
 #define debond_optimization_interval_h
 
-#include <limits>
+#include <debond/base/infinity.h>
 
 namespace Debond
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-
-
-
   /// A closed interval of real numbers, empty if lower > upper.
   struct Interval
   {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/solve/meshes/mesh_growth.h>
 
 #include <algorithm>
@@ -112,7 +113,7 @@ namespace Debond
   MeshGrowth::next() const
   {
     const AdaptiveLevel &last  = levels.back();
-    double               whole = std::numeric_limits<double>::infinity();
+    double               whole = infinity;
     if (accuracy.target > 0.)
       whole =
         std::pow(last.estimated_error() / (aim * accuracy.target), 1. / rate);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
 #include <debond/contact/boundary_coarsening.h>
@@ -413,7 +414,7 @@ namespace Debond
       {
         minimum.kind         = MinimumKind::stationary;
         minimum.proof_status = ProofStatus::no_bound;
-        minimum.lower_bound  = -std::numeric_limits<double>::infinity();
+        minimum.lower_bound  = -infinity;
       }
     if (minimum.energy_of_bonds > 0.)
       minimum.relative_gap =

@@ -2,6 +2,7 @@
 #ifndef debond_solve_minimum_progress_h
 #define debond_solve_minimum_progress_h
 
+#include <debond/base/infinity.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
@@ -83,9 +84,9 @@ namespace Debond
     const bool          terminal;
     bool                header_printed = false;
     bool                pending        = false; ///< last is not a finished line
-    double       last_print_seconds = -std::numeric_limits<double>::infinity();
-    unsigned int next_logged        = 1;
-    std::string  last_row;
+    double              last_print_seconds = -infinity;
+    unsigned int        next_logged        = 1;
+    std::string         last_row;
   };
 } // namespace Debond
 
