@@ -86,9 +86,10 @@ namespace Debond
     rlimit address_space;
     if (getrlimit(RLIMIT_AS, &address_space) == 0 &&
         address_space.rlim_cur != RLIM_INFINITY)
-      left = std::min(left,
-                      static_cast<double>(address_space.rlim_cur) -
-                        1024. * memory_of_process().VmSize);
+      left =
+        std::min(left,
+                 static_cast<double>(address_space.rlim_cur) -
+                   1024. * static_cast<double>(memory_of_process().VmSize));
     return least_of_ranks(std::max(0., left));
   }
 

@@ -665,7 +665,7 @@ namespace Debond
     const auto    &dofs  = given.problem.unknowns().dof_handler();
     const MPI_Comm ranks = given.problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
-    on_all_ranks(ranks, [&]() { residuals.emplace(of, u, factors); });
+    on_all_ranks(ranks, [&]() { residuals.emplace(given, u, factors); });
 
     const double constant =
       calibration<dim>(given.problem.unknowns().degree()) *

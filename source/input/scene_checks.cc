@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/input/contact_parameters.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/input/probe_parameters.h>
 #include <debond/input/scene_checks.h>

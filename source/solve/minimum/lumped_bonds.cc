@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
 #include <debond/contact/adhesion_sums.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/solve/minimum/lumped_bonds.h>
 
 #include <numeric>

@@ -2,6 +2,7 @@
 #include <debond/base/instantiate.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/elasticity/contact_condensation.h>
+#include <debond/optimization/global/convexity_shift.h>
 #include <debond/solve/minimum/minimum_kind.h>
 
 namespace Debond

@@ -2,8 +2,10 @@
 #include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/memory.h>
+#include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/minimum/lumped_bonds.h>

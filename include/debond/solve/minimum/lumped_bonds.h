@@ -3,6 +3,7 @@
 #define debond_solve_minimum_lumped_bonds_h
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/optimization/global/moves.h>
 #include <debond/optimization/global/separable_energy.h>
 
 namespace Debond
