@@ -6,6 +6,9 @@ namespace Debond
   std::vector<std::string>
   state_names(const AdhesiveLaw &law)
   {
+    // The first names are in the order of BondState, which begins with -1. A
+    // piece of the law that has one of these names shares its number, and each
+    // other name gets the next number once.
     std::vector<std::string> names = {"broken but closed",
                                       "contact",
                                       "bonded",

@@ -21,8 +21,12 @@ namespace Debond
         return 0.;
       if (values.front() >= 0.)
         return 1.;
-      // The corner on the one side of zero that has only one vertex. Of bonds
-      // that hold at any distance values are minus infinity.
+      // A segment or a triangle that zero cuts has a vertex that is alone on
+      // its side, with the value c. The edges from it to the vertices with
+      // values v are cut at the fraction c / (c - v), and the corner's part of
+      // the measure is the product of these fractions. Of bonds that hold at
+      // any distance values are minus infinity, which makes the positive part
+      // zero.
       const bool   one_is_positive = values[n - 2] <= 0.;
       const double corner = one_is_positive ? values.back() : values.front();
       double       part   = 1.;
@@ -41,6 +45,9 @@ namespace Debond
     double
     positive_part_on_pieces(const Function &function, const Density &density)
     {
+      // A face is cut into 1024 segments, or 32^2 triangles, which are equal in
+      // barycentric coordinates. Each has the exact positive part of its linear
+      // interpolant, and the density in its middle.
       constexpr unsigned int n   = dim == 2 ? 1024 : 32;
       double                 sum = 0.;
       for_each_part<dim - 1>(n, [&](const auto &corners) {
@@ -103,8 +110,15 @@ namespace Debond
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s)
   {
+    // A place is broken if it is opened beyond a threshold: that of
+    // AdhesiveLaw::broken_beyond(), or zero if there are no bonds or they are
+    // broken for good. The edge of the zone is the zero of the opening minus
+    // this threshold, so that the length of a crack changes continuously as the
+    // crack grows inside a face.
     const double broken_beyond = law.broken_beyond();
-    // Between points nothing is known of what bonds have been at.
+    // Bonds that do not return remember their largest opening at the quadrature
+    // points only. Unless these are the nodes, nothing is known between them,
+    // and the points are summed up.
     if (!adhesion.memory().empty() && !adhesion.points().is_nodal())
       return open_measure(adhesion, s);
 
@@ -122,7 +136,8 @@ namespace Debond
         const auto density = [&](const std::array<double, dim> &place) {
           return boundary.density(face, place);
         };
-        // In shear what is closed may be broken, and slide.
+        // With bonds that shear the opening is that of the jump in all
+        // directions: what is closed may be broken, and slide.
         const auto gap_beyond =
           [&](const std::array<double, dim> &coordinates) {
             return adhesion.points().opening(face, coordinates, s) -
@@ -136,6 +151,9 @@ namespace Debond
               face.measure * positive_part_on_pieces<dim>(gap_beyond, density);
             continue;
           }
+        // Of opening alone the thresholds at the vertices decide, and bounds of
+        // the displacement on the face. Thresholds are those just inside the
+        // face, since other bonds may begin at a vertex.
         const auto              trace = adhesion.points().trace_on(face, s);
         std::array<double, dim> thresholds, beyond;
         unsigned int            n_without = 0;
@@ -148,12 +166,19 @@ namespace Debond
           }
         const auto [low, high] =
           std::minmax_element(thresholds.begin(), thresholds.end());
+        // Openings are between -largest and -least. The whole face counts if
+        // the least opening is beyond the highest threshold, and nothing of it
+        // if the largest one is not beyond the lowest.
         const auto [least, largest] =
           range_on_simplex<dim>(trace, boundary.degree);
         if (-largest >= *high && -least > 0.)
           sum += face.measure;
         else if (-least > *low)
-          // Closed cracks are not open.
+          // Only part of the face is broken. If the opening is linear, there is
+          // no axis, and bonds are at all vertices or at none, the values at
+          // the vertices give this part; otherwise it is summed up over small
+          // pieces. Closed cracks are not open, as the opening has to exceed a
+          // threshold of zero.
           sum += face.measure *
                  (boundary.degree == 1 && n_without % dim == 0 &&
                       boundary.symmetry == Symmetry::none ?
@@ -172,11 +197,16 @@ namespace Debond
          const AdhesionIntegral<dim> &adhesion,
          const VectorView            &s)
   {
+    // In the plane a front is a point of the boundary. On a face with bonds at
+    // both ends it is the zero of the opening minus broken_beyond(), which is
+    // taken for linear. If the scene's bonds begin inside a face the front is
+    // in its middle, and if they begin at a vertex it is there.
     std::vector<dealii::Point<dim>> result;
     const double                    broken_beyond = law.broken_beyond();
     if (dim != 2 || broken_beyond == 0.)
       return result;
-    // Bonds next to a vertex: 0 if there are none, 2 if they hold.
+    // By the coordinates of a vertex, what bonds next to it do on the first of
+    // its faces: 0 if there are none, 1 if they are broken, 2 if they hold.
     std::map<double, std::map<double, unsigned int>> grips;
     for (const auto &face : boundary.faces)
       {
@@ -202,9 +232,13 @@ namespace Debond
             const dealii::Point<dim> &vertex = face.vertices[k];
             const auto [other, is_first] =
               grips[vertex[0]].emplace(vertex[1], grip[k]);
+            // The second face at the vertex: on one side bonds hold, and on the
+            // other one there are none.
             if (!is_first && grip[k] != 1 && grip[k] + other->second == 2)
               result.push_back(vertex);
           }
+        // Without bonds that hold at one end and do not at the other no front
+        // is inside the face.
         if ((grip[0] == 2) == (grip[1] == 2))
           continue;
         const double part =

@@ -50,6 +50,12 @@ namespace Debond
              const AdhesionIntegral<dim> &adhesion,
              const LoadFactors            factors)
   {
+    // Along a rigid motion with the parts p the elastic energy does not change,
+    // the normal displacements change by N p, and far enough along it Phi falls
+    // or rises by pull'N p. So J falls by (R'f - N'pull)'p, R being the motions
+    // of all nodes. Among the p with N p <= 0, which lead away from the
+    // foundation, the projection of R'f - N'pull on their cone is the steepest
+    // descent. If it is zero, no motion descends.
     const auto &nodes          = problem.unknowns().contact().boundary().nodes;
     const auto &motions        = problem.unknowns().held_by_contact().motions;
     const PiecewiseEnergy &law = adhesion.adhesive_law().pieces();
@@ -59,16 +65,19 @@ namespace Debond
     if (adhesion.shears() && !pull.isZero(0.))
       return {};
 
-    // Once bonds have broken nothing holds nodes along the boundary.
+    // Only the normal displacements are bounded: once bonds have broken,
+    // nothing holds nodes along the boundary.
     const Eigen::MatrixXd all =
       free_motions_of_contact(problem.unknowns()).transpose();
     Eigen::MatrixXd towards = all.leftCols(nodes.size());
-    // Of nodes that a rotation does not move only rounding is left.
+    // Of nodes that a rotation does not move only rounding remains. Its sign
+    // would make them go towards the foundation, and so forbid the rotation.
     const double rounding = Tolerance::motion_off * all.cwiseAbs().maxCoeff();
     towards          = (towards.array().abs() < rounding).select(0., towards);
     WorkOfLoads work = work_of_loads(problem, factors, motions);
     work.along -= all.leftCols(nodes.size()) * pull;
-    // Twice, as its errors are relative to what it projects.
+    // The projection is repeated, since its errors are relative to what it
+    // projects, which may be far larger than what remains.
     std::optional<Eigen::VectorXd> projection =
       project_on_polar_cone(towards, work.along);
     if (projection)
@@ -79,6 +88,8 @@ namespace Debond
     const double     largest = (all.transpose() * parts).cwiseAbs().maxCoeff();
     if (!(largest > 0.))
       return {};
+    // The work below is that for a unit of the largest displacement, and so a
+    // force.
     parts /= largest;
 
     dealii::Point<dim> centre;
@@ -91,7 +102,10 @@ namespace Debond
     ComingOff<dim> result{combination(motions, parts, centre, 0),
                           work.along.dot(parts),
                           (towards.transpose() * parts).maxCoeff()};
-    // Of several bodies the one that moves most.
+    // Of several bodies the motion is that of the one that moves most, by its
+    // translation and by what its rotation does at the farthest node. A body
+    // has to move more by more than rounding to be preferred, so that equal
+    // ones do not depend on the machine.
     const auto size = [radius](const RigidMotion<dim> &motion) {
       return motion.translation.norm() + radius * motion.rotation.norm();
     };
@@ -105,6 +119,9 @@ namespace Debond
     for (unsigned int i = 0; i < result.motion.rotation.dimension; ++i)
       if (std::abs(result.motion.rotation[i]) * radius <= Tolerance::motion_off)
         result.motion.rotation[i] = 0.;
+    // The loads have to do work beyond the rounding of their own terms, and no
+    // node may go towards the foundation. A comparison that fails for a NaN
+    // refuses as well.
     if (!(result.work > Tolerance::work * work.largest.dot(parts.cwiseAbs())) ||
         result.towards_foundation > Tolerance::motion_off)
       return {};

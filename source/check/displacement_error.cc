@@ -52,6 +52,10 @@ namespace Debond
                      const DofVector             &u,
                      const dealii::Function<dim> &exact)
   {
+    // The three norms are roots of integrals of squares: of the displacement,
+    // of its gradient, and of its strain with the elasticity tensor. The same
+    // integrals of the given displacement are what the errors are relative to,
+    // so that one pass over the cells sums up both.
     dealii::SymmetricTensor<4, 3> stiffness;
     const DofVector displacement = problem.unknowns().cartesian_displacement(u);
     CellStresses<dim> cell_stresses(problem.fields(),
@@ -68,6 +72,8 @@ namespace Debond
                          const dealii::Tensor<1, dim> &value,
                          const dealii::Tensor<2, dim> &gradient,
                          std::vector<double>          &squares) {
+      // The strain of the solid. Across the mesh it is u_r / r around an axis,
+      // and zero in the plane, whose hypothesis is part of the stiffness.
       auto strain = resized<3>(dealii::symmetrize(gradient));
       strain[2][2] += curvature * value[0];
       squares[0] += weight * value.norm_square();
@@ -81,7 +87,9 @@ namespace Debond
         {
           cell_stresses.reinit(cell);
           stiffness = problem.fields().solid_tensor(cell);
-          // The points of the rule are further than twice that from the faces.
+          // Differences of the fourth order take values up to two steps away.
+          // The points of the rule are further than that from the faces, so
+          // that no difference leaves the cell.
           known.set_h(1e-3 * cell->minimum_vertex_distance());
           for (const unsigned int q : values.quadrature_point_indices())
             {
@@ -104,6 +112,7 @@ namespace Debond
             }
         }
     });
+    // Each rank has the integrals over its own cells.
     dealii::Utilities::MPI::sum(errors, ranks, errors);
     dealii::Utilities::MPI::sum(norms, ranks, norms);
     const auto norm = [&](const unsigned int k) {

@@ -24,7 +24,7 @@ namespace Debond
     }
 
     /// J that is less than so much of the energy of the stresses is what large
-    /// terms leave.
+    /// terms leave when they cancel, and no scale for errors.
     constexpr double least_part_of_energy = 0.01;
 
     /// The mean of b_F over F.
@@ -76,6 +76,10 @@ namespace Debond
                 const dealii::Tensor<1, dim>          &force,
                 const dealii::SymmetricTensor<2, dim> &yield)
     {
+      // With b the product of all barycentric coordinates and F the integral of
+      // f_0 + div sigma over the cell K, J falls by (mean_K(b) |F|)^2 / (2 mu
+      // int_K |grad b|^2). The two integrals are those of monomials in
+      // barycentric coordinates.
       const double mean   = dim == 2 ? 1. / 60. : 1. / 840.;
       const double energy = of_cell.measure() * sum_of_squares(of_cell) /
                             (dim == 2 ? 180. : 15120.);
@@ -91,6 +95,8 @@ namespace Debond
     double
     mean_square(const std::array<Value, n> &values, const unsigned int degree)
     {
+      // The mass matrix of n linear functions on a simplex has 2 / (n (n + 1))
+      // on its diagonal and half of it elsewhere, for a measure of one.
       double squares = 0.;
       Value  sum     = values[0];
       for (unsigned int v = 0; v < n; ++v)
@@ -141,11 +147,19 @@ namespace Debond
                   dealii::update_values | dealii::update_quadrature_points |
                     dealii::update_normal_vectors | dealii::update_JxW_values)
       {
+        // One pass over the cells: each cell adds its stresses and its force,
+        // and then its faces. An inner face is added from that of its cells
+        // which comes later, when both have their stresses. So nothing but a
+        // few numbers of each cell is kept.
         const auto        &dofs = given.problem.unknowns().dof_handler();
         const unsigned int n    = dofs.get_triangulation().n_active_cells();
         cells.reserve(n);
         stresses.reserve(std::size_t(n) * n_stresses);
         parts.assign(n, 0.);
+        // Contact faces of a cell follow each other. The loop runs downwards,
+        // so that the first one of each cell is what remains. Those on the high
+        // side of an interface can be found by their place, for the faces of
+        // the low side have no contact faces of their own.
         for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
              f-- > 0;)
           {
@@ -224,6 +238,9 @@ namespace Debond
         const bool      has_axis = symmetry == Symmetry::axis;
         const double    around =
           has_axis ? circumference(symmetry, cell->center()) : 1.;
+        // The trace of the elastic stress over n components is (2 mu + n
+        // lambda) div u. So this is the part of it that lambda div u, minus the
+        // pressure, is.
         const int    n_traced       = has_axis ? 3 : dim;
         const double part_of_lambda = lambda / (2. * mu + n_traced * lambda);
         cells.push_back(
@@ -244,6 +261,9 @@ namespace Debond
           return has_axis ? dealii::trace(of_solid) :
                             dealii::trace(resized<dim>(of_solid));
         };
+        // The stress of degree 1 is constant but for that of the temperature,
+        // and of degree 2 it is linear. What is kept of it are its values at
+        // the vertices, or one if they are the same.
         const Stress3 &of_heat = given.problem.fields().thermal_stress(cell);
         const double   mean =
           std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
@@ -253,11 +273,17 @@ namespace Debond
           in_middle += 1. / n_points * at_points.stress(q);
         for (unsigned int v = 0; v < n_stresses; ++v)
           {
+            // The points of strain_rule() of degree 2 lie on the ways from the
+            // middle to the vertices, at this part of each, so that a linear
+            // stress is extrapolated to the vertices.
             const Stress3 stress =
               degree == 2 ?
                 in_middle + (at_points.stress(v) - in_middle) /
                               (1. - (dim + 1) * near_vertex<dim, double>()) :
                 in_middle - (heat[v] - mean) * of_heat;
+            // The pressure -lambda div u, with the isotropic part of what the
+            // temperature adds to it. Orthotropic materials are estimated
+            // without a jump of the pressure.
             const double thermal = heat[v] * trace(of_heat);
             stresses.push_back(
               {resized<dim>(stress),
@@ -281,6 +307,9 @@ namespace Debond
           }
         if (degree == 2)
           {
+            // Forces are integrals around the axis, while the energy of the
+            // cell's bubble is that of a plane cell: hence the quotient by the
+            // circumference.
             parts[cell->active_cell_index()] =
               fall_inside(of_cell, force, cells.back().yield) / around;
             force = 0.;
@@ -305,6 +334,9 @@ namespace Debond
             const double             around =
               at_loads.JxW(q) * circumference(symmetry, point);
             if (given.loads.body_force)
+              // The divergence of the linear stress is the sum over the
+              // vertices of their stresses times the gradients of their
+              // coordinates.
               force += load_factor * around * given.loads.force_at(point);
             if (given.dead_loads.body_force)
               force += around * given.dead_loads.force_at(point);
@@ -314,6 +346,8 @@ namespace Debond
                                   heat_factor *
                                   field_value(*temperature_change, point);
             for (unsigned int v = 0; v <= dim; ++v)
+              // Moments times the inverse of the mass matrix of linear
+              // functions, (d + 1) ((d + 2) I - 1 1') / |K|.
               heat[v] += (dim + 1.) *
                          ((dim + 2.) * at_loads.shape_value(v, q) - 1.) *
                          change;
@@ -355,6 +389,9 @@ namespace Debond
           symmetry == Symmetry::axis ?
             circumference(symmetry, cell->face(f)->center()) :
             1.;
+        // The gradient of the opposite vertex' coordinate points into the cell
+        // and has the length |F| / (d |K|), so that this is the outward normal
+        // times |F|, and around an axis times the circumference.
         return {cell->active_cell_index(),
                 -dim * around * at_points.values().measure() *
                   at_points.values().barycentric_gradient(opposite),
@@ -366,6 +403,9 @@ namespace Debond
       static dealii::SymmetricTensor<2, dim>
       orthotropic_yield(const dealii::SymmetricTensor<4, 3> &stiffness)
       {
+        // The acoustic tensor n.C.n has the mean C_ikjk / d over all directions
+        // n. Of an isotropic material it is a multiple of the identity that
+        // depends on mu and on the Poisson ratio.
         dealii::SymmetricTensor<2, dim> mean;
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = i; j < dim; ++j)
@@ -402,6 +442,10 @@ namespace Debond
                      const unsigned int   f,
                      const OtherIterator &neighbor)
       {
+        // The function b_F of the face moves both cells, so that what it takes
+        // is the sum of their energies, mu_T int_T |grad b_F|^2 each. The jump
+        // of the pressure pushes along the normal and has lambda + 2 mu in
+        // place of mu. Each cell has one half of what J falls by.
         const Face         face  = face_of(cell, f);
         const unsigned int other = neighbor->active_cell_index();
         const DoneCell    &here  = cells[face.cell];
@@ -420,7 +464,9 @@ namespace Debond
           {
             const unsigned int own   = face.in_cell[v];
             const unsigned int index = cell->vertex_index(own);
-            unsigned int       w     = 0;
+            // The vertex of the neighbour that is the same as this one, if
+            // stresses differ from vertex to vertex.
+            unsigned int w = 0;
             while (n_stresses > 1 && neighbor->vertex_index(w) != index)
               ++w;
             const Stress &inside  = stress_at(face.cell, own);
@@ -433,6 +479,9 @@ namespace Debond
                 r[v] -= jumps[v] * face.area;
               }
           }
+        // Both terms are quotients of the square of int_F r b_F and twice an
+        // energy; the area of the face is a factor of r, and of the jumps it is
+        // put beside them.
         const double energy =
           fall(mean_square(jumps, degree) * face.area.norm_square(),
                here.lambda_and_2_mu * (a + b)) +
@@ -473,6 +522,10 @@ namespace Debond
             measure < Tolerance::rounding_of_data *
                         std::pow(cell->face(f)->measure(), 2))
           return;
+        // On the boundary r is the load less sigma n, and on Gamma_C less what
+        // bonds and foundation bear, all in force per area, with half of the
+        // force of the cell. Loads and bonds may be any functions of the place,
+        // so that the mean square, r.r / mu, is integrated by a rule.
         const dealii::Tensor<1, dim> normal = face.area / measure;
         on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
                        f);
@@ -484,7 +537,8 @@ namespace Debond
               coordinates[v] = on_face.shape_value(face.in_cell[v], q);
             const dealii::Point<dim> &point = on_face.quadrature_point(q);
             dealii::Tensor<1, dim>    r = mean_in_cell / measure * here.force;
-            // Of degree 1 the mean.
+            // With linear displacements the stress of a face is its mean over
+            // the vertices.
             for (unsigned int v = 0; v < dim; ++v)
               r -= (degree == 1 ? 1. / dim : coordinates[v]) *
                    (stress_at(face.cell, face.in_cell[v]).whole * normal);
@@ -556,7 +610,11 @@ namespace Debond
                       const typename ContactBoundary<dim>::Face &face,
                       const std::array<double, dim> &coordinates) const
       {
-        // Displacements of iterative methods may be off by so much.
+        // The residual with the traction of the bonds, j_1', which pulls the
+        // body back. If all nodes of the face are in contact, the foundation
+        // bears a residual that pushes the body into it, and only one that
+        // pulls the body off counts. Displacements of iterative methods may
+        // miss contact by a small part of the largest one.
         const double                 measure = side.area.norm();
         const dealii::Tensor<1, dim> normal =
           (side.area * face.normal > 0. ? 1. : -1.) * face.normal;
@@ -574,7 +632,10 @@ namespace Debond
              s(face.node(k)) >= -Tolerance::estimated_contact * largest_s);
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
-        // What yields stretches the bonds, too.
+        // What yields stretches the bonds too: they add their secant stiffness,
+        // force / way, times int_F b_F^2 to the energy of b_F. J falls by the
+        // square of r over the energy, so that r is divided by the root of what
+        // multiplies the energy.
         const auto stretched = [&](const dealii::Tensor<1, dim> &direction,
                                    const double                  force,
                                    const double                  way) {
@@ -609,6 +670,8 @@ namespace Debond
                 const dealii::Tensor<1, dim>    &normal,
                 const dealii::types::boundary_id id) const
       {
+        // A roller holds the normal direction, other supports hold Cartesian
+        // components. There the reaction balances any traction.
         for (const PrescribedDisplacement<dim> &held :
              given.supports.displacements)
           if (held.boundaries.count(id) > 0)
@@ -667,6 +730,8 @@ namespace Debond
     std::optional<Residuals<dim>> residuals;
     on_all_ranks(ranks, [&]() { residuals.emplace(given, u, factors); });
 
+    // The calibration is for the sum of all parts. The factor of an
+    // AdaptiveLevel multiplies it, and the density of the error with it.
     const double constant =
       calibration<dim>(given.problem.unknowns().degree()) *
       error_factor.value_or(1.);
@@ -679,6 +744,8 @@ namespace Debond
     for (const auto &cell : owned_cells(dofs))
       sum += result.cells[cell->active_cell_index()];
     result.functional = dealii::Utilities::MPI::sum(sum, ranks);
+    // J near zero, as a sum of terms that cancel, says nothing about the size
+    // of errors; the energy of the stresses takes its place.
     const double stress_energy =
       dealii::Utilities::MPI::sum(residuals->stress_energy, ranks);
     result.is_of_J =

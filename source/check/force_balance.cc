@@ -29,6 +29,10 @@ namespace Debond
       const std::vector<std::string> &names = unknowns.support_names();
       for (const std::string &name : names)
         result.reactions[name];
+      // A u - f at an unknown that a support holds is the force of this
+      // support. One unknown is taken at a time, since each may be held by
+      // another support; its force becomes a Cartesian one through the frame of
+      // its node and, if the unknown is a jump, becomes forces on both nodes.
       std::map<unsigned int, unsigned int> of_node;
       for (const auto &[dof, support] : unknowns.supported())
         of_node[static_cast<unsigned int>(dof / dim)] = support;
@@ -66,6 +70,11 @@ namespace Debond
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         {
+          // The derivative of Phi by the normal displacement, so that the bonds
+          // act on the body with minus this force, and the support that holds
+          // the vertex has to bear it. Between two bodies the support of the
+          // low side bears it the other way, and the sum over all supports does
+          // not change.
           const dealii::Tensor<1, dim> force = held_forces[k] * held[k].normal;
           result.contact_reaction -= force;
           if (held[k].is_tangential)
@@ -109,9 +118,11 @@ namespace Debond
                         const std::vector<double> &held_forces,
                         Verification<dim>         &result)
   {
-    // What the supports and the foundation exert is the residual at their
-    // degrees of freedom; what is held there and by no support is held by the
-    // foundation.
+    // The force balance is that of all forces on the body: loads, supports and
+    // foundation. What supports and foundation exert is the residual A u - f at
+    // their unknowns; what is held there and by no support is held by the
+    // foundation. Residuals at free unknowns belong to none of these, so that
+    // they make an imbalance.
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     const auto                 &normals  = unknowns.contact().normal_dofs();
     DofVector                   clamped(unknowns.n_dofs());
@@ -148,11 +159,13 @@ namespace Debond
           result.tangential_forces[i] -=
             held_forces[tangent.index] * tangent.direction;
 
-    // Resultants can vanish where forces do not.
+    // The imbalance is relative to the sum of the sizes of all forces, since
+    // resultants can vanish if forces do not.
     DofVector all = clamped;
     all += contact;
     const double scale = all.l1_norm() + applied.l1_norm();
-    // Each body is in balance by itself.
+    // Each body is in balance by itself: forces between bodies act on both, and
+    // would cancel in the sum over all bodies.
     all = unknowns.cartesian_forces(all);
     all += applied;
     std::vector<dealii::Tensor<1, dim>> sums(unknowns.n_bodies());
@@ -161,7 +174,8 @@ namespace Debond
     double imbalance = 0.;
     for (dealii::Tensor<1, dim> &sum : sums)
       {
-        // Away from an axis hoop stresses hold what loads do not.
+        // Away from an axis hoop stresses balance what loads do not, so that
+        // only the component along the axis is in balance.
         if (unknowns.symmetry() == Symmetry::axis)
           sum[0] = 0.;
         imbalance = std::max(imbalance, sum.norm());

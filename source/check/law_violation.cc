@@ -20,6 +20,9 @@ namespace Debond
   double
   first_threshold(const AdhesiveLaw &law)
   {
+    // Pieces are listed from s = 0 downwards, so that the first kink is the
+    // upper end of the second piece. It is negative, as openings are negative
+    // displacements.
     return law.pieces().size() > 1 ? -law.pieces()[1].upper : 0.;
   }
 
@@ -33,6 +36,11 @@ namespace Debond
              const VectorView            &resolved,
              const LawScale              &largest)
   {
+    // F_i and L_i make errors of forces and of displacements comparable. F_i is
+    // what the bond can bear, but at most the largest contact force, since a
+    // strength far above all forces would make any error small; and it is at
+    // least what rounding resolves. L_i is the displacement at which bonds pull
+    // with F_i, but at most the largest displacement of the body.
     const AdhesiveLaw &law = adhesion.adhesive_law();
     const double       largest_force =
       std::max(Tolerance::contact_force * largest.force,
@@ -44,6 +52,9 @@ namespace Debond
       scales.push_back({largest.length, std::max(largest_force, least)});
     const auto set =
       [&](const unsigned int i, const BondScale &bonds, const double measure) {
+        // With j_1(s) = energy j(s / length), kinks are multiplied by the
+        // length and tractions by energy over length. A traction times the
+        // measure of the node is a force.
         const double threshold = first_threshold(law) * bonds.length;
         const double strength =
           law.bond_strength() * bonds.energy / bonds.length * measure;
@@ -53,6 +64,8 @@ namespace Debond
           scale.force = std::min(scale.force, strength);
         scale.force = std::max(scale.force, resolved(i));
         if (has_bonds)
+          // Up to its first kink the bond is taken for a spring, which F_i
+          // opens by this part of the threshold.
           scale.length =
             std::min(scale.length,
                      threshold * std::min(1., scale.force / strength));
@@ -95,16 +108,22 @@ namespace Debond
              const VectorView            &forces,
              const std::vector<LawScale> &scales)
   {
-    // A larger delta allows more, so that bisection finds the least one. It
-    // bisects the exponent, because a node next to a jump of the law is close
-    // to the graph, however far its force is from what is allowed at its very
-    // displacement.
+    // The distance of a node from the graph of the law is the least delta for
+    // which its force is within delta F_i of a force that the law allows within
+    // delta L_i of s_i. A larger delta allows more, so that bisection finds the
+    // least one. It bisects the exponent, because a node next to a jump of the
+    // law is close to the graph, however far its force is from what is allowed
+    // at its very displacement: delta may be 1e-12 there, or 1, and is wanted
+    // to the same relative accuracy.
     const unsigned int          n       = adhesion.n_unknowns();
     const unsigned int          n_nodes = adhesion.n_nodes();
     const std::vector<Interval> at_s    = adhesion.force_intervals(s, 0.);
 
-    // What is needed at fixed displacements is enough. It is exactly zero
-    // for a node on the graph.
+    // The first upper end of delta is the one that is needed if displacements
+    // are fixed: the distance of the force from the Clarke interval at s_i, or
+    // the penetration. It is exactly zero for a node on the graph, and stays
+    // so. Otherwise the lower end is the least positive number, since zero has
+    // no exponent.
     std::vector<double> lower(n, 0.);
     std::vector<double> upper(n, 0.);
     for (unsigned int i = 0; i < n; ++i)
@@ -120,11 +139,14 @@ namespace Debond
           lower[i] = std::numeric_limits<double>::min();
       }
 
-    // The exponents of double are 2^11, its mantissa has 2^53 values.
+    // Eleven steps find the binary exponent among the 2^11 of double precision,
+    // and 53 more find the mantissa.
     std::vector<double> delta(n);
     std::vector<double> radius(n);
     for (unsigned int step = 0; step < 11 + 53; ++step)
       {
+        // The middle of the exponents is the geometric mean. Its roots are
+        // taken apart, as the product of two small numbers would underflow.
         for (unsigned int i = 0; i < n; ++i)
           {
             delta[i]  = std::sqrt(lower[i]) * std::sqrt(upper[i]);
@@ -134,6 +156,10 @@ namespace Debond
           adhesion.force_intervals(s, radius);
         for (unsigned int i = 0; i < n; ++i)
           {
+            // The allowed forces are the hull of the Clarke intervals over s_i
+            // +- delta L_i (Goldstein's subdifferential), and all above it if
+            // contact is within that distance. Unknowns along tangents have no
+            // bound and no contact.
             const bool     is_bounded = i < n_nodes;
             const Interval allowed =
               unbounded_above_if(is_bounded && s(i) >= -radius[i],

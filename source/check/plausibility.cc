@@ -15,6 +15,8 @@ namespace Debond
                  const DofVector           &u,
                  const LoadFactors          factors)
   {
+    // All ranks have the displacements of all nodes, while gradients and
+    // stresses are those of their own cells, and need the largest of all ranks.
     const DofVector displacement =
       problem.unknowns().cartesian_displacement(u, factors);
     LargestValues largest;
@@ -46,12 +48,17 @@ namespace Debond
   faces_in_softening_zone(const ElasticProblem<dim>   &problem,
                           const AdhesionIntegral<dim> &adhesion)
   {
+    // Along the boundary bonds soften over about E' G / strength^2, and a front
+    // is resolved if some faces fit into this length. Bonds that never soften,
+    // or that take energy without end, have no such length.
     const AdhesiveLaw &law    = adhesion.adhesive_law();
     const double       energy = law.pieces().largest_value();
     if (!law.softens() || !std::isfinite(energy))
       return infinity;
 
-    // Over E', of the faces of each cell.
+    // All ranks know all faces of the contact boundary, but only the materials
+    // of their own cells. So the number of faces over E' is kept by cell, and
+    // E' multiplies it in the loop over own cells.
     const auto         &handler = problem.unknowns().dof_handler();
     std::vector<double> faces_by_modulus(
       handler.get_triangulation().n_global_active_cells(), infinity);
@@ -63,6 +70,8 @@ namespace Debond
         {
           const double strength =
             law.bond_strength() * bonds.energy / bonds.length;
+          // G is the law's largest energy per area times that of the bonds
+          // here. The size of a face divides the length of the zone.
           double &faces = faces_by_modulus[face.cell];
           faces         = std::min(faces,
                            energy * bonds.energy /
@@ -136,6 +145,9 @@ namespace Debond
   bond_notes(const dealii::Triangulation<dim>    &body,
              const std::vector<ContactNodeState> &nodes)
   {
+    // Bonds that are broken at rest, or that break beyond the size of the body,
+    // mostly have a wrong unit. The gap at rest is u_nu - s, whatever the load,
+    // and opens bonds by as much.
     double least_threshold = infinity;
     bool   are_all_broken  = true;
     for (const ContactNodeState &node : nodes)
@@ -152,7 +164,8 @@ namespace Debond
     if (are_all_broken)
       return {"all bonds are broken at rest: the initial gap is beyond their "
               "threshold"};
-    // Each rank has the box of its own cells.
+    // The body's thickness is the least side of its box, of which each rank has
+    // that of its own cells.
     const auto box  = dealii::GridTools::compute_bounding_box(body);
     double     size = infinity;
     for (unsigned int d = 0; d < dim; ++d)
@@ -179,7 +192,12 @@ namespace Debond
                 const bool                   are_glued,
                 const bool                   is_curved)
   {
-    // Of what is free the force along the boundary is zero.
+    // Two sums of forces are compared with what all bonds could bear, the sum
+    // of their strengths times the measures of their nodes. One is of the
+    // forces along the boundary at nodes whose bonds do not shear, which are
+    // held there; of what is free to slide they are zero. The other one is of
+    // the pressures at nodes that slide, as their bonds have broken, where the
+    // flat faces of a curved boundary may lock.
     double along = 0., could_bear = 0., pressed = 0.;
     for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
       {

@@ -88,6 +88,11 @@ namespace Debond
               const double                 tolerance,
               Verification<dim>           &result)
     {
+      // The branch follows from the opening alone, and from what bonds have
+      // left for good. The state is contact if s is zero within a tolerance, or
+      // if a gap under pressure is as small as the violation of the node; else
+      // it is a kink if the opening is at an end of a piece, and otherwise the
+      // branch.
       const AdhesiveLaw     &law         = adhesion.adhesive_law();
       const PiecewiseEnergy &branches    = law.pieces();
       const BondScale        bonds       = adhesion.points().bonds_at(i);
@@ -102,19 +107,25 @@ namespace Debond
           state_of(std::max(least_piece,
                             branches.index(-node.opening / bonds.length)));
       const double threshold = first_threshold(law) * bonds.length;
+      // The tolerance is relative to the first threshold, but not above the
+      // largest displacement, as a threshold may be far above all of them; and
+      // what rounding of forces is in displacements counts as closed as well.
       const double no_gap =
         std::max(scale.rounding,
                  tolerance * (threshold > 0. ? std::min(threshold, largest_s) :
                                                largest_s));
       // A small gap under pressure is contact that an iterative method has not
-      // closed yet.
+      // closed yet: contact has to be within delta L_i, with the delta of the
+      // node's violation, and that within 1e-3.
       const double gap =
         std::max(tolerance,
                  std::min(Tolerance::open_contact, 1.01 * node.violation));
       if (node.s >= -no_gap ||
           (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
-          // What is closed may slide, and soften or break by it.
+          // What is closed may slide, and soften or break by it: then it has
+          // the state of its bonds. It is broken but closed if the bonds have
+          // broken for good or in shear, and in contact otherwise.
           node.state = node.branch == BondState::broken &&
                            (least_piece > 0 || node.mode_mixity) ?
                          BondState::broken_but_closed :
@@ -128,6 +139,8 @@ namespace Debond
            k < branches.size() && bonds.energy > 0.;
            ++k)
         {
+          // The kinks that the bond can still come to. At a kink the branch is
+          // the piece on the side of 0.
           const double kink = branches[k].upper * bonds.length;
           if (std::abs(-node.opening - kink) <= tolerance * std::abs(kink))
             {
@@ -149,6 +162,9 @@ namespace Debond
                   const dealii::Tensor<1, dim> &slip,
                   Verification<dim>            &result)
     {
+      // At contact and kinks the graph of the law is vertical, so that only the
+      // force tells the traction. Elsewhere the traction is that of the law at
+      // the node itself, while the force is a mean around the node.
       ContactNodeState &node     = result.nodes[i];
       const BondScale   bonds    = adhesion.points().bonds_at(i);
       const bool        by_force = node.normal_force > 0. ||
@@ -220,6 +236,11 @@ namespace Debond
                  const LoadFactors          factors,
                  const double               least_force)
     {
+      // A u - f is the force of supports, foundation and bonds at their
+      // unknowns, and should be zero at all others, which is how good the
+      // equilibrium is. Both are judged beside the rounding of A u: its rows
+      // are sums of large terms that cancel, and what they leave in double
+      // precision is no error of the solver.
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const ElasticFields<dim>   &fields   = problem.fields();
       ForceScales                 result;
@@ -238,15 +259,18 @@ namespace Debond
       if (unknowns.has_gap())
         result.rounding_of_gaps =
           fields.residual_rounding(DofVector(u.size()), factors).linfty_norm();
-      // A body at rest, or off, has no other forces.
+      // A body at rest, or one that has detached, has no other forces than the
+      // rounding of gaps, which therefore counts at all unknowns.
       if (Tolerance::force_rounding * result.largest() <
           result.rounding_of_gaps)
         result.rounding.add(result.rounding_of_gaps);
-      // Where a part has come off and moves without stress, the other one has
-      // no forces either, but the rounding of the part that moves.
+      // If a part has detached and moves without stress, the other one has no
+      // forces either, but the rounding of the part that moves.
       if (const double largest = result.rounding.linfty_norm();
           result.largest() < largest)
         result.rounding.add(largest);
+      // Not more than a small part of the largest force may be taken for the
+      // rounding of gaps, or a wrong force could hide behind a large gap.
       result.resolved_beside_loads =
         std::max(least_force,
                  Tolerance::resolved *
@@ -294,6 +318,10 @@ namespace Debond
       node.u_nu    = s + boundary_node.gap;
       if (!boundary_node.tangents.empty() && bonds.shear > 0.)
         {
+          // The square of the opening, l^2 = p^2 + r |t|^2. What is closed has
+          // p = 0, but its slip opens the bonds all the same. Bonds that break
+          // separately have the opening p along the normal, and one of their
+          // own in shear.
           const Jump<dim> jump   = {std::min(s, 0.), slip};
           const double    square = jump.product(jump, bonds.shear);
           node.mode_mixity =
@@ -301,8 +329,11 @@ namespace Debond
           if (bonds.shear_energy == 0.)
             node.opening = std::sqrt(square);
         }
-      node.normal_force   = normal_force;
-      node.allowed_force  = unbounded_above_if(s >= 0., bond_forces);
+      node.normal_force  = normal_force;
+      node.allowed_force = unbounded_above_if(s >= 0., bond_forces);
+      // From j_1(s) = energy j(s / length): the second derivative is that of
+      // the law times energy over squared length. Damage is that of the largest
+      // opening, of this state or one before.
       node.bond_stiffness = std::max(0., law.second_derivative(0.)) *
                             bonds.energy / (bonds.length * bonds.length);
       node.bond_threshold = law.bond_threshold() * bonds.length;
@@ -325,6 +356,8 @@ namespace Debond
     {
       DofVector u = unknowns.basis().to_nodal(displacement, BasisStep::jumps);
       for (const auto &pair : unknowns.pairs().all())
+        // A pair with a minus has its first node on the low side, and its
+        // second one on the high side.
         if (pair.sign < 0.)
           for (unsigned int d = 0; d < dim; ++d)
             u(dim * pair.first + d) = u(dim * pair.second + d);
@@ -376,6 +409,9 @@ namespace Debond
       const auto     &normals = contact.normal_dofs();
       for (unsigned int i = 0; i < normals.size(); ++i)
         {
+          // A force that is known to its rounding leaves a displacement that is
+          // known to the rounding over the diagonal of A, the stiffness of this
+          // unknown.
           scales[i].rounding =
             std::max(least, found.rounding(normals[i])) / diagonal(normals[i]);
           if (std::abs(s(i)) <= scales[i].rounding)
@@ -422,6 +458,10 @@ namespace Debond
         "the "
         "scene are too large or too small for double precision.");
 
+    // All that follows is from A u - f, which is summed up from the stresses in
+    // the cells, without any figure of the solver. At the contact normals it is
+    // the force of the foundation on the body; along -nu it is positive if the
+    // foundation pushes, and negative if bonds pull.
     const ContactSpace<dim>    &contact  = problem.unknowns().contact();
     const ContactBoundary<dim> &boundary = contact.boundary();
     const DofVector residual = problem.fields().residual(u, factors);
@@ -437,6 +477,9 @@ namespace Debond
     result.without_bonds = zone_without_bonds(boundary, adhesion);
     add_nodes(adhesion, s, forces, slips, result);
 
+    // The order matters: the scales of the law need the rounding of forces,
+    // violations need these scales, and the states of nodes need the
+    // violations, within which a gap under pressure counts as contact.
     const ForceScales found =
       force_scales(problem, u, residual, factors, least_force);
     std::vector<LawScale> scales =
@@ -449,6 +492,8 @@ namespace Debond
     const std::vector<double> distances =
       violations(adhesion, s, forces, scales);
 
+    // Violations are those of s as it is. For the broken zone, openings by
+    // rounding alone are closed, since a crack that is closed has no length.
     const Eigen::VectorXd rounded = closed_by_rounding(
       contact, problem.diagonal(), found, tolerance * least_force, s, scales);
     result.broken_zone =
@@ -462,6 +507,8 @@ namespace Debond
                           *std::max_element(distances.begin(), distances.end());
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
+        // A node is as far from the law as the worst of its unknowns, along the
+        // normal and along its tangents.
         double &violation = result.nodes[i].violation;
         violation         = distances[i];
         for (const auto &tangent : boundary.nodes[i].tangents)
@@ -475,6 +522,9 @@ namespace Debond
     else
       result.shear_tractions.clear();
 
+    // The largest force at an unknown where there should be none, relative to
+    // the largest one of all, or to what is resolved beside rounding if there
+    // is no other.
     result.equilibrium_residual =
       found.free > 0. ?
         found.free / std::max({found.free, found.supported, found.resolved()}) :
@@ -489,6 +539,8 @@ namespace Debond
                           held_forces(adhesion, s),
                           result);
 
+    // If this is above a tenth, all forces may be rounding, and nothing has
+    // been verified; error() is infinite then.
     result.force_rounding =
       found.load > 0. ?
         std::max(found.rounding.linfty_norm(), found.rounding_of_gaps) /
