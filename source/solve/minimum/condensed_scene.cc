@@ -12,7 +12,9 @@ namespace Debond
                                const AdhesionIntegral<dim> &integral) const
   {
     // With nodal bonds each s_i has the law w_i f(s_i / l_i), and g is affine
-    // in the factor, as StationaryPath needs it.
+    // in the factor, as StationaryPath needs it: its slope is the difference of
+    // g over the length of the interval of t. Pieces that a bond has left for
+    // good are below its least one.
     const Eigen::VectorXd             g = load(first);
     std::vector<StationaryPath::Bond> bonds_of_nodes;
     const auto                       &nodes = scene.contact_boundary().nodes;

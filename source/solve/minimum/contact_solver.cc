@@ -163,12 +163,16 @@ namespace Debond
       DofVector
       displacement() const override
       {
+        // All other unknowns are at equilibrium with s under the last load: u_i
+        // = A_ii^{-1} (f_i - A_ic s).
         return (here ? *here : whole).expand(s);
       }
 
       std::unique_ptr<CorrectionSolver>
       correction() override
       {
+        // The refinement uses the factors of A again, which do not depend on
+        // the load.
         return std::make_unique<CondensedCorrection>(whole);
       }
 
@@ -249,7 +253,8 @@ namespace Debond
         , cycle(make_cycle(scene, has_levels))
       {
         const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-        DofVector                   rest(unknowns.n_dofs());
+        // At rest only contact normals over a gap are not zero.
+        DofVector rest(unknowns.n_dofs());
         unknowns.contact().add(unknowns.contact().at_rest(), rest);
         MultigridSolver::start_from(rest);
       }
@@ -362,6 +367,8 @@ namespace Debond
         const auto &unknowns = scene.problem().unknowns();
         DofVector   start(unknowns.n_dofs());
         unknowns.contact().add(solver->point(), start);
+        // Only s of the start is kept, since the factorisation finds all other
+        // unknowns by elimination.
         Solution   result = solver->minimise(factors, bonds, progress);
         const auto direct =
           factorisation_instead(scene, parameters, choice, result.status);

@@ -12,6 +12,10 @@ namespace Debond
     const ElasticProblem<dim> &elastic_problem)
     : problem(elastic_problem)
   {
+    // What a cell needs is kept in extended precision: the gradients of its
+    // barycentric coordinates, its volume and its moduli. The moduli are data,
+    // for which double precision is enough: rounding them changes the stresses
+    // of a cell by the same part, and leaves rigid motions without stress.
     make_reference_gradients();
     for (const auto &dof_cell : owned_cells(problem.unknowns().dof_handler()))
       {
@@ -19,10 +23,11 @@ namespace Debond
         cell.dofs.resize(dof_cell->get_fe().dofs_per_cell);
         dof_cell->get_dof_indices(cell.dofs);
 
-        // Row v of edges is the edge to vertex v + 1.
-        // Differences of coordinates are taken in extended precision, since
-        // rounded gradients would spoil all that follows: a rigid motion has to
-        // have no stress.
+        // Row v of edges is the edge to vertex v + 1, and the columns of its
+        // inverse are the gradients of the barycentric coordinates but the
+        // first. Differences of coordinates are taken in extended precision,
+        // since rounded gradients would spoil all that follows: a rigid motion
+        // has to have no stress.
         dealii::Tensor<2, dim, long double> edges;
         for (unsigned int v = 0; v < dim; ++v)
           for (unsigned int d = 0; d < dim; ++d)
@@ -59,6 +64,8 @@ namespace Debond
     };
     if (problem.unknowns().degree() == 1)
       {
+        // With linear displacements the strain is constant, and the rule has
+        // the middle of the cell only.
         reference_gradients.emplace_back();
         for (unsigned int v = 1; v <= dim; ++v)
           reference_gradients[0].push_back(derivative(v));
@@ -84,6 +91,8 @@ namespace Debond
           }
         for (unsigned int v = 1; v <= dim; ++v)
           gradients.push_back((4.L * coordinate(v) - 1.L) * derivative(v));
+        // Functions of the vertices are L (2 L - 1), those of the middles of
+        // edges 4 L_a L_b, with barycentric coordinates L.
         for (unsigned int l = 0; l < n_simplex_edges(dim + 1); ++l)
           {
             const auto &[a, b] = simplex_edges[l];
@@ -127,9 +136,12 @@ namespace Debond
                                     const ExtendedVector &displacement,
                                     ExtendedVector       &forces) const
   {
-    // Of all nodes but the first, from which the displacements are counted:
-    // what neighbours have in common is gone before it is multiplied by a
-    // modulus.
+    // The forces of a cell in four steps: differences of the nodes'
+    // displacements, the displacement gradient at each point of the rule, the
+    // stress there, and its product with the gradients of the basis functions.
+    // Displacements of all nodes but the first are counted from the first, so
+    // that what neighbours have in common is gone before it is multiplied by a
+    // modulus. The forces of these nodes are `of_nodes`.
     std::array<Gradient, most_nodes> differences, of_nodes = {};
     const auto n = static_cast<unsigned int>(reference_gradients[0].size());
     for (unsigned int k = 0; k < n; ++k)
@@ -138,7 +150,8 @@ namespace Debond
                             displacement(cell.dofs[d]);
     for (unsigned int q = 0; q < reference_gradients.size(); ++q)
       {
-        // By barycentric coordinates, and from them in space and back.
+        // Derivatives are taken by barycentric coordinates, whose gradients
+        // take them to space; the stress goes back the same way.
         dealii::Tensor<2, dim, long double> by_coordinates, to_coordinates;
         for (unsigned int k = 0; k < n; ++k)
           by_coordinates +=
@@ -148,6 +161,8 @@ namespace Debond
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int e = 0; e < dim; ++e)
             gradient[d][e] = in_space[d][e];
+        // The points of the rule have equal weights. Around an axis these are
+        // multiplied by 2 pi r, and the strain u_r / r is that of all nodes.
         long double weight = cell.volume / reference_gradients.size();
         if (has_axis())
           {
@@ -203,6 +218,9 @@ namespace Debond
   {
     if (cell.stiffness != nullptr)
       {
+        // With the symmetries of C the product with the displacement gradient
+        // is that with the strain. The component 2, 2 is the one around the
+        // axis; in the plane no force is made of it.
         Stress      sigma;
         const auto &C = *cell.stiffness;
         for (unsigned int i = 0; i < dim; ++i)
@@ -222,6 +240,7 @@ namespace Debond
           sigma[2][2] += C[2][2][2][2] * gradient[2][2];
         return sigma;
       }
+    // Isotropic: lambda div u I + 2 mu epsilon.
     Stress            sigma;
     const long double trace = dealii::trace(gradient);
     for (unsigned int d = 0; d < dim; ++d)

@@ -33,6 +33,12 @@ namespace Debond
   SeparableEnergy
   lumped_bonds(const AdhesionIntegral<dim> &adhesion, NeighbourGraph &graph)
   {
+    // With nodal quadrature Phi is a sum over the nodes. With other rules this
+    // is an approximation, in which row sums move all stiffness to the
+    // diagonal, and which only guides a search. If bonds shear, each is a
+    // function of l = -sqrt(s^2 + r |t|^2) with the unknowns of its node:
+    // `bonds` of the result says to which bond an unknown belongs, and
+    // `weights` what its square counts in l.
     const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
     const Eigen::VectorXd  weights = lumped_weights(adhesion);
     if (!adhesion.shears())
@@ -44,6 +50,11 @@ namespace Debond
     result.bonds.resize(weights.size());
     std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
     result.weights = Eigen::VectorXd::Ones(weights.size());
+    // Bonds that break separately in shear, and those of vertices that are held
+    // along the normal, are bonds of their own, with numbers after those of the
+    // nodes. `weights` has the second derivative of Phi along the tangent for a
+    // law with j_1'' = 1. The energy of the bond is this, times the square of
+    // its length, over the ratio of the stiffnesses.
     std::vector<unsigned int> shear_bonds(n, 0); // of nodes, 0 is none
     const auto                add = [&](const auto      &vertex,
                          const BondScale &bonds,
@@ -80,6 +91,8 @@ namespace Debond
                              i);
       }
     for (unsigned int i = 0; i < n; ++i)
+      // Bonds in shear are neighbours if their nodes are, so that a search
+      // moves the edges of what slips as it moves those of what is open.
       if (shear_bonds[i] >= n)
         for (const unsigned int j : graph[i])
           if (shear_bonds[j] >= n)
@@ -104,6 +117,8 @@ namespace Debond
   bool
   is_sum_over_nodes(const AdhesionIntegral<dim> &adhesion)
   {
+    // A bond with a prescribed displacement in its jump is no function of
+    // unknowns alone: its l does not vanish with them.
     return adhesion.points().is_nodal() &&
            std::none_of(adhesion.points().list().begin(),
                         adhesion.points().list().end(),

@@ -38,6 +38,10 @@ namespace Debond
     double
     more_cycles(const MaterialParameters &materials)
     {
+      // The measure is the largest bulk modulus over the least Young modulus.
+      // For one isotropic material that is 1 / (3 (1 - 2 nu)), which is 1 for
+      // nu = 1/3 and grows without bound towards 1/2; for several it contains
+      // their contrast.
       double     softest  = std::numeric_limits<double>::max();
       double     stiffest = 0.; // as a bulk modulus
       const auto add      = [&](const Material &material) {
@@ -130,8 +134,8 @@ namespace Debond
   double
   memory_of_factorisation(const unsigned int dim, const double n)
   {
-    // The fill of minimum degree orderings is about n log n in 2D, n^(4/3) in
-    // 3D.
+    // Bytes of mesh, matrix and factor. The fill of minimum degree orderings is
+    // about n log n in 2D, n^(4/3) in 3D.
     return dim == 2 ?
              (900. + 29. * std::log2(n)) * n :
              bytes_of_mesh_and_matrix * n + 125. * std::pow(n, 4. / 3.);
@@ -211,6 +215,10 @@ namespace Debond
                        const SolverParameters &solver,
                        MethodChoice           &choice)
   {
+    // Memory comes first, then time, both by the symbolic factorisation of this
+    // very matrix. A factorisation is preferred if it fits and does not take
+    // much longer, since with S and g there are a search and a proof on all
+    // contact nodes, and further loads cost little.
     const ProblemParameters    &problem    = scene.parameters();
     const ElasticUnknowns<dim> &unknowns   = scene.problem().unknowns();
     const double                n          = unknowns.n_dofs();
@@ -239,6 +247,8 @@ namespace Debond
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;
         if (choice.linear_solver == LinearSolver::automatic)
           {
+            // A path has one factorisation for all its factors, while multigrid
+            // solves anew at each of them.
             const std::size_t n_steps =
               std::max<std::size_t>(1, problem.load_path.factors.size());
             std::string &why_multigrid = choice.reason_for_multigrid;
@@ -311,8 +321,9 @@ namespace Debond
         (status != SolverStatus::stagnated &&
          status != SolverStatus::quadratic_program))
       return {};
-    // Too little memory for a factorisation leaves the failure of multigrid as
-    // the result.
+    // Multigrid has stagnated, or its conjugate gradients have not reached
+    // their tolerance. If there is too little memory for a factorisation, the
+    // failure of multigrid remains the result.
     MethodChoice     direct   = choice;
     SolverParameters directly = solver;
     directly.linear_solver    = LinearSolver::direct;

@@ -23,6 +23,8 @@ namespace Debond
                       const VectorView            &s,
                       const Condensation          *condensed)
   {
+    // Without a second piece of the law, or without contact nodes, J is convex
+    // and any stationary point is the minimum.
     if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
       return MinimumKind::global;
     // With an energy that depends on the mode there is no J that it would be a

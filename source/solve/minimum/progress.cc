@@ -55,6 +55,8 @@ namespace Debond
     std::string
     padded(const std::string &line)
     {
+      // A shorter line would leave the end of the longer one before it on the
+      // terminal.
       constexpr unsigned int longest = 60;
       return line.size() < longest ?
                line + std::string(longest - line.size(), ' ') :
@@ -67,6 +69,7 @@ namespace Debond
     unsigned int
     following(const unsigned int number)
     {
+      // By the leading digit: 1 and 5 are doubled, 2 is followed by 5.
       unsigned int leading_digit = number;
       while (leading_digit >= 10)
         leading_digit /= 10;

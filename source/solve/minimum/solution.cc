@@ -8,6 +8,9 @@ namespace Debond
   void
   Solution::add(const Solution &later)
   {
+    // The iterations of the later minimisation are numbered on behind those so
+    // far, so that all of them make one history. How the whole has ended is
+    // what the later one says.
     const auto add_iterations = [this](const auto &history, auto &all) {
       for (auto iteration : history)
         {

@@ -125,8 +125,10 @@ namespace Debond
       // path itself has no law and only contact makes its breakpoints.
       const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
       problem.load += springs * last.s - here.subgradient(last.s);
-      // Displacements along tangents have no bound and follow from the others
-      // at each t.
+      // Displacements along tangents have no bound, so that they are
+      // eliminated: they follow from s at each t by K_tt t_t = g_t(t) - K_tn s,
+      // with the stiffness K of body and springs. S is then the Schur
+      // complement, and its load is reduced in the same way.
       const Eigen::Index    n = bonds.n_nodes(), m = last.s.size() - n;
       const Eigen::MatrixXd to_tangents = stiffness.topRightCorner(n, m);
       const Eigen::LLT<Eigen::MatrixXd> of_tangents(
@@ -137,11 +139,16 @@ namespace Debond
       const Eigen::VectorXd by_slope = of_tangents.solve(problem.slope.tail(m));
       const Eigen::MatrixXd S =
         stiffness.topLeftCorner(n, n) - to_tangents * by_normals;
+      // Displacements that supports prescribe move with the factor, and the
+      // bonds of vertices that they hold with them.
       const auto at = [&](const double passed) {
         return bonds.at(last.factors.displacements +
                         passed *
                           (next.displacements - last.factors.displacements));
       };
+      // The first change on a straight part of the way, between the parts
+      // `from` and `to` of the whole: a point of the rule that comes to the end
+      // of its piece there. If none does the part is 1, and there is no change.
       const auto change = [&](const double           from,
                               const Eigen::VectorXd &s,
                               const double           to,
@@ -163,7 +170,9 @@ namespace Debond
                            true},
                           last.s.head(n),
                           0.);
-      const auto     point = [&]() {
+      // All unknowns at the present t: the normal displacements of the path,
+      // and the tangential ones that follow from them.
+      const auto point = [&]() {
         Eigen::VectorXd s(last.s.size());
         s << path.point(),
           by_load + path.t() * by_slope - by_normals * path.point();
@@ -206,10 +215,11 @@ namespace Debond
     bool has_slope = false;
     for (unsigned int k = 0; k < branches.size(); ++k)
       has_slope = has_slope || branches[k].slope != 0.;
-    // From the cheapest to the dearest: without gaps, slopes of the law and
-    // other factors all displacements are proportional to the factor, and the
-    // change is a quotient. Otherwise the way is straight between changes of
-    // contact, and the path of stationary points is followed over them.
+    // The cheapest way that is right is taken. Without gaps, slopes of the law
+    // and other factors all displacements are proportional to the factor, and
+    // the change is a quotient. At rest one problem with bounds gives the
+    // direction of the whole way. Otherwise the way is straight between changes
+    // of contact, and the path of stationary points is followed over them.
     const LoadPathParameters   &load_path = scene.scene.parameters().load_path;
     const ElasticUnknowns<dim> &unknowns  = scene.scene.problem().unknowns();
     const bool                  is_proportional =
@@ -230,6 +240,8 @@ namespace Debond
           return change_from_rest(scene, bonds, last, next);
         if (!is_proportional || has_held)
           return change_between_nodes(scene, bonds, last, next, interruption);
+        // Displacements are proportional to the factor, so that the whole way
+        // is straight, and its first change is that of any point of the rule.
         const double          whole = next.loads / last.factors.loads - 1.;
         const Eigen::VectorXd way   = whole * last.s;
         const double          part  = bonds.first_change(last.s, way, 1.);
@@ -245,7 +257,9 @@ namespace Debond
     StationaryPath path(scene.between(last.factors, next, 1., bonds),
                         last.s,
                         0.);
-    // Contact that comes and goes. Changes at the end of the step count.
+    // Changes of contact are passed until a bond changes, and one at the very
+    // end of the step counts. More than two changes of contact for each node
+    // would be rounding.
     Event event = Event::contact;
     for (unsigned int k = 0; event == Event::contact && k < 2 * last.s.size() &&
                              !interruption.requested();

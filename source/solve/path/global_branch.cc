@@ -26,7 +26,9 @@ namespace Debond
         , interruption(interruption)
         , operations_left(parameters.search_operations)
       {
-        // With a limit of work not more than what is worth its time.
+        // The search is full unless its work is limited: then it tries only
+        // what is worth its time. A proof comes last, for the points that
+        // remain.
         parameters.method = SolverMethod::automatic;
         parameters.search = std::isfinite(operations_left) ?
                               BondSearchChoice::automatic :
@@ -41,6 +43,9 @@ namespace Debond
              const std::size_t n_left,
              BranchPoint      &point)
       {
+        // The limit of one search is several parts of an equal share, as most
+        // searches end long before it. What each has taken is subtracted from
+        // what the later ones share.
         parameters.search_operations =
           most_parts * operations_left / double(n_left);
         point.which = improve(parameters, factors, point);

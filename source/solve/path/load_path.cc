@@ -124,6 +124,11 @@ namespace Debond
       {
         if (!steps.empty())
           return;
+        // A path remembers from step to step the displacement, from which the
+        // next minimisation starts; the bonds' memory, what each has reached;
+        // and s of all steps, from which the global branch starts. To begin
+        // with the body is at rest, and over a gap bonds may be stretched
+        // beyond what they return from by that alone.
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
         progress.u.reinit(unknowns.n_dofs());
         unknowns.contact().add(last_point(), progress.u);
@@ -138,6 +143,9 @@ namespace Debond
       void
       follow(const LoadPathObserver<dim> &observer)
       {
+        // The steps of an earlier run are told again and continued. A step that
+        // has failed, or that is not verified, has a message, and ends the
+        // path, since later ones would start from it.
         table.titles("broken part");
         for (const LoadPathStep<dim> &step : steps)
           table.row(step);
@@ -160,6 +168,9 @@ namespace Debond
             table.row(steps.back());
           }
         result.parts["followed path"] += timer.wall_time();
+        // What bonds take may depend on the mode in which they break. If it
+        // changes within steps, by more than a part of the energy taken on the
+        // whole path, the steps are too large for it.
         const BondMemory &memory = progress.memory;
         const double      taken =
           std::accumulate(memory.taken.begin(), memory.taken.end(), 0.);
@@ -203,7 +214,10 @@ namespace Debond
         const Stage               stage("global branch");
         const CondensedScene<dim> condensed_scene = condensed();
         const dealii::Timer       timer;
-        Branch                    followed;
+        // The followed states are where the branch starts from. A path may come
+        // to a factor several times, when it unloads, and then the lowest of
+        // its states is taken.
+        Branch followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
             const LoadFactors factors = steps[k].factors();
@@ -222,7 +236,9 @@ namespace Debond
         table.section("global branch");
         const bool proves = parameters.global_branch == GlobalBranch::prove;
         table.titles(proves ? "gap" : "states tried");
-        // A search that was not asked for takes no longer than the path.
+        // A search that was not asked for takes no longer than the path. Its
+        // work is counted in operations, so that its result does not depend on
+        // the machine.
         SolverParameters limited = settings.parameters;
         if (parameters.global_branch == GlobalBranch::automatic)
           limited.search_operations = operations_of_path();
@@ -241,6 +257,7 @@ namespace Debond
                 point.which.search_trials,
               to_string(point.which.kind));
           });
+        // A search that its limit has cut has a note.
         const auto n_cut =
           std::count_if(branch.begin(), branch.end(), [](const auto &entry) {
             return !entry.second.which.notes.empty();
@@ -386,6 +403,11 @@ namespace Debond
         const AdhesionIntegral<dim> last = bonds_before();
         for (unsigned int k = 1;; ++k)
           {
+            // The modes that bonds have are fixed while J is minimised, as
+            // their energy has no potential otherwise. If what they take then
+            // depends on the modes found by more than a small part, the step is
+            // done again from the same start with these. The number of such
+            // repetitions is limited.
             Progress silent;
             bonds.freeze_mode();
             Solution minimum = solver->minimise(factors, bonds, silent);
@@ -423,7 +445,8 @@ namespace Debond
                AdhesionIntegral<dim>       &bonds,
                const LoadPathObserver<dim> &observer)
       {
-        // The first change on the way is one of the bonds as they were before.
+        // The first change on the way from the last step is one of the bonds as
+        // they were before it. It takes S, and is not known without it.
         std::optional<double>     change_factor;
         const Condensation *const condensed = solver->condensed();
         if (!steps.empty() && condensed != nullptr)
@@ -433,6 +456,8 @@ namespace Debond
                                    {steps.back().factors(), points.back()},
                                    factors,
                                    interruption);
+        // The order matters: the displacement is refined before bonds break for
+        // good by it, and the verification is of the bonds as they are then.
         progress.u = solver->displacement();
         refine(bonds, factors, *solver->correction(), progress.u);
         points.push_back(solver->point());
@@ -446,7 +471,9 @@ namespace Debond
         step.change_factor = change_factor;
         step.iterations    = minimum.iterations;
         step.status        = to_string(minimum.status);
-        // Only bonds that soften ask for S and g there.
+        // The kind of the minimum follows from the pieces of the law alone,
+        // unless bonds soften: then the second-order condition needs S, and g
+        // at this factor.
         std::optional<Condensation> at_step;
         if (condensed != nullptr && bonds.softens())
           at_step = CondensedScene<dim>{scene, *condensed}.at(factors);
@@ -551,7 +578,8 @@ namespace Debond
         const bool          verified = is_verified(state.verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
-        // Without loads J is rounding of what it is at other factors.
+        // Both energies are sums that are rounded relative to J at the largest
+        // factor: without loads J is nothing but that rounding.
         double rounding = 0.;
         for (const LoadPathStep<dim> &step : steps)
           rounding =
@@ -567,7 +595,8 @@ namespace Debond
               if (!verified && step.message.empty())
                 step.message = location(step) +
                                "global branch: " + failure(state.verification);
-              // The followed state is this one, or as good.
+              // The followed state is this one, or as good: it gets the word of
+              // the search or of the proof.
               if (step.message.empty() &&
                   step.state.functional <=
                     global.functional + rounding +
@@ -614,6 +643,8 @@ namespace Debond
   {
     PathFollower<dim> path(parameters, settings, std::move(begun), out);
     path.follow(observer);
+    // The order matters: first the followed path, whose states the branch
+    // begins with. A path that has failed has neither branch nor arc.
     const bool wants_branch = parameters.global_branch != GlobalBranch::none;
     const bool has_branch   = path.has_global_branch();
     if (wants_branch && has_branch && path.has_no_failure())

@@ -87,6 +87,12 @@ namespace Debond
              const double               tolerance,
              const Interruption        &interruption)
   {
+    // The arc is the curve of stationary points of J in s and the factor,
+    // stable or not, of which a load path sees the stable parts and jumps over
+    // the rest. For bonds at nodes with quadratic pieces it is straight between
+    // breakpoints, so that it is followed exactly, one breakpoint after the
+    // other, without a step size. Each breakpoint becomes a state with all its
+    // numbers.
     const Stage               stage("arc");
     LoadPathArc<dim>          arc;
     const LoadPathParameters &parameters = scene.scene.parameters().load_path;
@@ -120,6 +126,8 @@ namespace Debond
       if (!parameters.bonds_heal)
         here.break_for_good(path.point_before_kinks());
       memory = here.memory();
+      // The other unknowns follow from s at equilibrium, whether or not the
+      // point is a minimum.
       const DofVector u =
         at_factors(scene.condensed, scene.scene.problem(), here, factors)
           .expand(path.point());
@@ -143,7 +151,9 @@ namespace Debond
 
     using Event = StationaryPath::Event;
     Event last  = Event::contact;
-    // Nodes touch and go through the pieces of the law, there and back.
+    // The limit of breakpoints is a few for each node and each piece of the
+    // law, as nodes touch and go through the pieces there and back. More of
+    // them mean that rounding leads the path in a circle.
     const std::size_t most =
       100 + 10 * (1 + scene.scene.law().pieces().size()) * s.size();
     bool is_going = add(true);

@@ -46,13 +46,15 @@ namespace Debond
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &boundary = unknowns.contact().boundary();
-      // They share their load over another length.
+      // Bonds that soften share their load over another length, E' G /
+      // strength^2.
       if (adhesion.softens())
         return 0.;
 
-      // By cell the stiffness of bonds times the size of a face where some of
-      // its nodes have a bond and others have none: there a front may be, and
-      // E*/a has to be resolved.
+      // By cell the stiffness of bonds times the size of a face if some of its
+      // nodes have a bond and others have none: there a front may be, and E*/a
+      // has to be resolved. Of bonds that shear the stiffer direction has the
+      // shorter length.
       std::vector<double> at_edge(
         unknowns.dof_handler().get_triangulation().n_global_active_cells());
       for (const auto &face : boundary.faces)
@@ -77,6 +79,9 @@ namespace Debond
             at_edge[face.cell] = stiffness * face.size();
         }
       double largest = 0.;
+      // Faces are known to all ranks, materials to the rank that owns the cell.
+      // E* is E / (1 - nu^2) in plane stress too, hence the modulus of the
+      // solid.
       for (const auto &cell : owned_cells(unknowns.dof_handler()))
         if (const double of_cell = at_edge[cell->id().get_coarse_cell_id()];
             of_cell > 0.)
@@ -139,7 +144,9 @@ namespace Debond
           // stand for.
           const ContactNodeState &node = verification.nodes[i];
           measure += nodes[i].measure;
-          // What is closed and slides is as broken as what is open.
+          // A closed node is in contact, whatever its bonds are, unless it may
+          // slide: then it is as broken as if it were open, and has the part of
+          // its branch.
           const bool is_closed =
             node.state == BondState::contact ||
             (node.state == BondState::broken_but_closed && !node.mode_mixity);
@@ -148,6 +155,8 @@ namespace Debond
           state.mean_gap -= nodes[i].measure * node.s;
           state.normal_force += node.normal_force;
         }
+      // Sums over nodes become parts of the whole contact boundary, and the gap
+      // its mean. The normal force remains a sum.
       if (measure > 0.)
         {
           for (double *number : {&state.contact_part,
@@ -196,6 +205,8 @@ namespace Debond
     state.functional =
       problem.fields().elastic_functional(u, factors) + state.adhesion_energy;
 
+    // What the verification has computed from the stresses is copied, so that
+    // the table of a path shows how good each of its states is.
     state.contact_reaction     = verification.contact_reaction;
     state.clamped_reaction     = verification.clamped_reaction;
     state.law_violation        = verification.law_violation;

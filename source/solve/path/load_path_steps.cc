@@ -23,6 +23,10 @@ namespace Debond
         verify(scene.problem(), bonds, u, factors, scene.least_force()))
     , state(load_path_state(scene.problem(), bonds, factors, u, verification))
   {
+    // A state is verified before it is turned into numbers, since these are of
+    // the branches that the verification finds. Means over named pieces and
+    // probes follow the reactions in the list of vectors, whose titles are
+    // columns of the table.
     const auto add = [&](const std::string &kind, const Probes<dim> &probes) {
       for (const auto &[name, vector] :
            probes.values(scene.problem(), u, factors))
@@ -60,6 +64,10 @@ namespace Debond
     totals.steps   = static_cast<unsigned int>(steps.size());
     totals.last    = steps.back().factors();
 
+    // The broken part of a step is compared with that of the step before, and
+    // that of the first one with zero. The largest growth and the largest fall
+    // are those of the jumps of a path; what differs by the rounding of
+    // decimals is no change.
     double broken = 0.;
     for (const LoadPathStep<dim> &step : steps)
       {
@@ -80,6 +88,9 @@ namespace Debond
           totals.largest_closing = change;
         broken = change.broken_after;
 
+        // The followed state may be above the lowest one known at its factor,
+        // by more than the digits that a search resolves: there the path has
+        // stayed in a minimum that is not global.
         if (step.global)
           {
             const double excess =

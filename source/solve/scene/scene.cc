@@ -30,6 +30,8 @@ namespace Debond
     DofVector
     read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
     {
+      // The start has to be a w of this scene: zero where displacements are
+      // prescribed, and with s <= 0 at all contact nodes.
       const DofVector u = read_displacement(file_name, problem.unknowns());
       bool            admissible = true;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
@@ -157,8 +159,8 @@ namespace Debond
     for (const std::set<double> &of_rank :
          dealii::Utilities::MPI::all_gather(ranks, moduli))
       moduli.insert(of_rank.begin(), of_rank.end());
-    // Where parts meet, the forces of both are in one sum, of whose 16 digits
-    // the softer one has four left.
+    // At nodes between parts the forces of both are in one sum, of whose 16
+    // digits the softer one has four.
     if (!moduli.empty() && *moduli.rbegin() > 1e12 * *moduli.begin())
       throw EntryError("Material/Young modulus",
                        words("moduli of ",
@@ -169,8 +171,11 @@ namespace Debond
                              "for double precision; what is 1e6 times as stiff "
                              "as the rest is as good as rigid"));
     elastic_problem->assemble(body_materials, body_loads, body_dead_loads);
-    // Loads are linear in their factor. What gaps make of the body's stiffness
-    // is left out: no force has to be small beside that.
+    // The least force that is resolved is a part of the largest nodal force, of
+    // loads or of what supports prescribe, at any factor of the path. Both are
+    // linear in their factor, so that the extreme factors decide. What gaps
+    // make of the body's stiffness is left out: no force has to be small beside
+    // that.
     std::vector<double> factors = given.load_path.factors;
     if (factors.empty())
       factors = {1.};

@@ -114,7 +114,9 @@ namespace Debond
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }
-    // Bonds without stiffness leave the body free to slide.
+    // Bonds without stiffness, or whose first piece is no spring, bear no shear
+    // and leave the body free to slide. Without tangential unknowns the problem
+    // is smaller, and the same.
     const auto or_free = [&](const TangentialDisplacement wanted) {
       double     stiffness;
       const bool is_none =
@@ -144,6 +146,8 @@ namespace Debond
                  const RegionNames        &regions)
   {
     ByRegion<Material> materials(parameters.everywhere);
+    // Regions may overlap, so that a name stands for several ids of the mesh,
+    // one for each combination of regions. Each id may have one material only.
     std::map<dealii::types::material_id, std::string> taken;
     for (const auto &[name, material] : parameters.of_regions())
       for (const dealii::types::material_id id : regions.at(name))
@@ -225,7 +229,8 @@ namespace Debond
                   const BoundaryConditions &conditions)
   {
     // A number is made a constant function: parsed expressions cost much more
-    // at each point, and most bonds differ by boundary only.
+    // at each point, and most bonds differ by boundary only. Without a text
+    // there is no function, and the bonds of the law itself hold.
     using Field      = typename BondField<dim>::Field;
     using Bonds      = typename BondField<dim>::Bonds;
     const auto field = [&](const std::string &text) -> Field {
@@ -264,13 +269,18 @@ namespace Debond
         shear.boundaries.insert(id);
     double number;
     if (!shear.boundaries.empty() && read_number(given.shear.stiffness, number))
+      // The ratio r of the stiffnesses along the boundary and along the normal,
+      // of which the opening sqrt(p^2 + r |t|^2) is made.
       shear.stiffness = number / law.second_derivative(0.);
     if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
       {
         const double whole       = number / law.pieces().largest_value();
         const double power       = given.shear.exponent;
         const bool   is_relative = shear.is_relative;
-        // The energy in shear over that of the bonds of a point.
+        // G_II / G_I of the bonds of a point. The fracture energy at the part
+        // of shear m, over G_I, is 1 + (G_II / G_I - 1) m^eta by Benzeggagh and
+        // Kenane, and by the power law ((1 - m)^eta + (m G_I / G_II)^eta)^(-1 /
+        // eta).
         const auto ratio = [=](const double energy) {
           return is_relative ? whole : whole / energy;
         };
@@ -329,6 +339,8 @@ namespace Debond
       for (const double factor : load_factors)
         {
           const double normal = factor * vertex.normal_displacement;
+          // A displacement along a tangent cannot penetrate, and the normal one
+          // may come to the gap but for rounding.
           if (vertex.is_tangential ||
               normal - vertex.gap <=
                 Tolerance::rounding_of_data * (1. + std::abs(factor)) * largest)

@@ -41,6 +41,9 @@ namespace Debond
           make_function<dim>(load.expression,
                              parameters.constants,
                              load.n_components(dim));
+        // The measure of the faces that bear the load, on all ranks: a total
+        // force is divided by it. Around an axis it is asked for all loads, as
+        // faces on the axis itself have none.
         double measure = 0.;
         if (load.kind == "Force" || symmetry == Symmetry::axis)
           {
