@@ -224,7 +224,7 @@ namespace Debond
                 place    = {};
                 place[k] = 1.;
               }
-            // What has broken for good stays broken where it closes.
+            // What has broken for good stays broken if it closes.
             beyond[k] = std::max(adhesion.points().opening(face, place, s),
                                  -adhesion.reached_at(face, k) * bonds.length) -
                         broken_beyond * bonds.length;

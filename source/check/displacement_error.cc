@@ -12,7 +12,7 @@ namespace Debond
   namespace
   {
     /// A displacement with derivatives by differences. Throws
-    /// std::invalid_argument where it is not finite.
+    /// std::invalid_argument if it is not finite.
     template <int dim>
     class ExactDisplacement : public dealii::AutoDerivativeFunction<dim>
     {

@@ -198,16 +198,16 @@ namespace Debond
       /// What rounding of u can make of A u - f, at each degree of freedom.
       DofVector rounding;
 
-      /// The largest that rounding of w = u - gap makes of it: where the body
+      /// The largest that rounding of w = u - gap makes of it: if the body
       /// stays far from the foundation, w is larger than u.
       double rounding_of_gaps = 0.;
 
       /// The least force that is resolved beside these loads and those of other
       /// times, whatever rounding is where it acts. A body that no force
       /// presses has only rounding of gaps. Thermal loads balance each other:
-      /// where heat has loosened a press fit, nothing but rounding is left of
-      /// the forces, and the condensation leaves up to 20 times what
-      /// residual_rounding() counts.
+      /// if heat has loosened a press fit, only rounding remains of the forces,
+      /// and the condensation leaves up to 20 times what residual_rounding()
+      /// counts.
       double resolved_beside_loads = 0.;
 
       double
@@ -423,7 +423,7 @@ namespace Debond
 
 
     /// The largest displacement of a bond now or, if it broke for good, before:
-    /// where all of these are closed again, s is rounding.
+    /// if all of these are closed again, s is rounding.
     template <int dim>
     double
     largest_displacement(const AdhesionIntegral<dim> &adhesion,

@@ -80,6 +80,9 @@ namespace Debond
     std::vector<double>
     of_whole_mesh(const Scene<dim> &scene, const std::vector<double> &of_cells)
     {
+      // Each rank enters the numbers of its own cells, all others being zero,
+      // so that the sum over the ranks is the list of the whole mesh on each of
+      // them.
       std::vector<double> result(scene.n_cells(), 0.);
       for (const auto &cell :
            owned_cells(scene.problem().unknowns().dof_handler()))

@@ -13,6 +13,8 @@ namespace Debond
                    const std::string                            &start,
                    const std::vector<std::vector<unsigned int>> &divisions)
   {
+    // A mesh that is not refined is that of the body itself, which keeps its
+    // coarser levels for multigrid.
     if (!accuracy.is_adaptive())
       return std::make_shared<const Scene<dim>>(problem, start, MPI_COMM_WORLD);
     std::shared_ptr<const BisectedBody<dim>> body;

@@ -124,7 +124,7 @@ namespace Debond
     if (!std::isfinite(whole))
       return largest_growth;
     // The way to the aim in equal steps, as few as the largest growth allows;
-    // and where the factor is not known yet, a step that is large enough to
+    // and if the factor is not known yet, a step that is large enough to
     // measure it.
     const double steps =
       std::max(1., std::ceil(std::log(whole) / std::log(largest_growth)));

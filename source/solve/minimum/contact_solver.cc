@@ -53,8 +53,8 @@ namespace Debond
       if (choice.linear_solver != LinearSolver::multigrid)
         return condense_to_contact(problem, scene.adhesion());
       // The columns of S = A_cc - A_ci A_ii^{-1} A_ic are products with
-      // solutions of A_ii. The contact normals are held in them, so that
-      // A_ii is definite even where only bonds hold the body.
+      // solutions of A_ii. The contact normals are held in them, so that A_ii
+      // is definite even if only bonds hold the body.
       const Stage                 stage("condensation by multigrid");
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       const auto                 &normals  = unknowns.contact().dofs();
@@ -82,6 +82,9 @@ namespace Debond
                          Progress                         &progress,
                          MajorantProblem                  &problem)
     {
+      // What is printed at each iteration, and what is returned, is J: the
+      // functional of the problem and the energy of what is prescribed, which
+      // is the same at all points.
       MajoriseMinimiseResult result =
         MajoriseMinimise(parameters)
           .minimize(problem,
@@ -146,6 +149,9 @@ namespace Debond
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
+        // From one load to the next few nodes change their contact or the piece
+        // of their bond, so that the factor of the last majorant is kept and
+        // bordered instead of made anew.
         condensed.factorise_by(factor);
         return by_majorise_minimise(scene.minimisation(
                                       parameters.majorise_minimise),
@@ -266,7 +272,8 @@ namespace Debond
         const ContactSpace<dim> &contact  = unknowns.contact();
         DofVector                v        = start;
         // Interpolation from a coarser mesh may go through the foundation: what
-        // is above zero of s is taken away from the normal displacement alone.
+        // is above the bound of s is taken away from the normal displacement
+        // alone.
         contact.enforce_bounds(v);
         u = distribute(v,
                        unknowns.dof_handler().locally_owned_dofs(),
@@ -428,6 +435,8 @@ namespace Debond
                       const SolverParameters &parameters,
                       const Scene<dim>       &scene)
   {
+    // A factorisation has nothing that could stand in for it. Multigrid may
+    // stagnate, and then has one.
     if (choice.linear_solver == LinearSolver::multigrid)
       return std::make_unique<MultigridOrFactorisation<dim>>(choice,
                                                              parameters,

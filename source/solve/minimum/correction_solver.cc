@@ -22,12 +22,12 @@ namespace Debond
       return;
 
     // (A + E)^{-1} by the block factors of A in double precision: A_ii is in
-    // the factor of the condensation, and what is left is S + E on the nodes
+    // the factor of the condensation, and what remains is S + E on the nodes
     // that are not held.
     Eigen::MatrixXd whole = condensed.schur_complement();
     whole += E;
     const Eigen::MatrixXd matrix = whole(free, free);
-    // Where rounding has made S + E indefinite a larger diagonal mends it.
+    // If rounding has made S + E indefinite, a larger diagonal mends it.
     double shift = 0.;
     while (shift < Tolerance::largest_shift)
       {

@@ -41,6 +41,8 @@ namespace Debond
     // that a run may start from one that had others.
     const DofVector in_order = in_serial_order(unknowns, u);
     write_atomically(file_name, [&in_order](std::ostream &out) {
+      // With so many digits the numbers that are read are the same to the last
+      // bit.
       out.precision(std::numeric_limits<double>::max_digits10);
       for (const double value : in_order)
         out << value << '\n';
@@ -54,6 +56,9 @@ namespace Debond
   read_displacement(const std::string          &file_name,
                     const ElasticUnknowns<dim> &unknowns)
   {
+    // Each rank reads the whole file, since it has the vector of all unknowns.
+    // There has to be a number for each of them and nothing else, which tells
+    // most files of other scenes.
     const unsigned int n_dofs = unknowns.n_dofs();
     std::ifstream      file   = open_plain_file(file_name);
     DofVector          u(n_dofs);

@@ -117,6 +117,7 @@ namespace Debond
     for (const Cell &cell : cells)
       add_forces(cell, displacement, forces);
 
+    // Each rank has the forces of its own cells, and gets the sum of all.
     dealii::Utilities::MPI::sum(
       dealii::ArrayView<const long double>(forces.data(), forces.size()),
       problem.unknowns().communicator(),
@@ -204,6 +205,7 @@ namespace Debond
   ExtendedOperator<dim>::radius(const Cell        &cell,
                                 const unsigned int point) const
   {
+    // The radius is linear in a cell.
     return std::inner_product(cell.radii.begin(),
                               cell.radii.end(),
                               barycentric[point].begin(),

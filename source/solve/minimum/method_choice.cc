@@ -62,7 +62,7 @@ namespace Debond
 
 
     /// Returns whether the scene needs S and g: for the metric of the energy
-    /// bundle, for Newton steps and second-order conditions where bonds soften,
+    /// bundle, for Newton steps and second-order conditions if bonds soften,
     /// for full searches, proofs and arcs, and for bodies that only bonds hold,
     /// whose resultants are set in g.
     template <int dim>
@@ -181,7 +181,7 @@ namespace Debond
     MethodChoice choice;
     choice.method        = solver.method;
     choice.linear_solver = wanted_linear_solver(solver, choice.method);
-    // The paper's method needs thousands of iterations where this one needs a
+    // The paper's method needs thousands of iterations, while this one needs a
     // few majorants; it is there to be reproduced, for those who ask for it.
     if (choice.method == SolverMethod::automatic)
       {
@@ -280,8 +280,8 @@ namespace Debond
 
     choice.has_levels =
       choice.linear_solver == LinearSolver::multigrid && has_levels;
-    // S by multigrid only where something needs it, since each of its columns
-    // is a solution.
+    // S by multigrid only if something needs it, since each of its columns is a
+    // solution.
     choice.is_condensed =
       choice.linear_solver == LinearSolver::direct ||
       (choice.linear_solver == LinearSolver::multigrid && needs_S);

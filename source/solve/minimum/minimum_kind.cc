@@ -40,14 +40,14 @@ namespace Debond
     // point.
     if (!adhesion.softens())
       return MinimumKind::local_minimum;
-    // Where bonds soften, Phi'' is negative, and only S can tell whether it
+    // If bonds soften, Phi'' is negative, and only S can tell whether it
     // outweighs that.
     if (condensed == nullptr)
       return MinimumKind::stationary;
     // The second-order condition: S + Phi'' is positive definite on the s_i
-    // that are free, with the smaller Phi'' where a bond is next to a kink.
-    // Nodes at s = 0 under pressure cannot move to first order; those that only
-    // touch the foundation can, and are free too.
+    // that are free, with the smaller Phi'' if a bond is next to a kink. Nodes
+    // at s = 0 under pressure cannot move to first order; those that only touch
+    // the foundation can, and are free too.
     const Eigen::MatrixXd S = condensed->schur_complement();
     const Eigen::VectorXd pressure =
       condensed->load() - S * s - adhesion.subgradient(s);

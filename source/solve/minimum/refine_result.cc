@@ -14,8 +14,8 @@ namespace Debond
                 Solution           &result)
   {
     // On very slender bodies rounding in double precision keeps a solver from
-    // its end. Where it has stopped is near enough to the minimum for extended
-    // precision to go on from there.
+    // its end. The point at which it has stopped is near enough to the minimum
+    // for extended precision to continue from there.
     const bool has_failed = result.status == SolverStatus::quadratic_program ||
                             result.status == SolverStatus::no_descent;
     if (!can_be_verified(result.status) && !has_failed)
@@ -41,6 +41,9 @@ namespace Debond
       }
     const Eigen::VectorXd after =
       scene.problem().unknowns().contact().trace(result.u);
+    // If the second derivative of Phi has changed by more than rounding, bonds
+    // have come to other pieces of the law. Then what was said about the kind
+    // of minimum was about another state.
     const auto curvature = [&](const Eigen::VectorXd &s) {
       return scene.adhesion().second_derivative(s);
     };

@@ -35,7 +35,7 @@ namespace Debond
                      const LoadFactors          factors,
                      const DofVector           &u)
   {
-    // Of u itself, and of a lifting that w undoes, as a gap is undone where the
+    // Of u itself, and of a lifting that w undoes, as a gap is undone if the
     // body stays at rest.
     const ElasticUnknowns<dim> &unknowns    = problem.unknowns();
     const bool                  has_lifting = unknowns.has_lifting();
@@ -62,8 +62,8 @@ namespace Debond
   namespace
   {
     /// The majorant of J at a point, in extended precision, and its minimum
-    /// within the bounds. In the displacements themselves: where a gap is far
-    /// larger than they are, nothing would be left of them in w.
+    /// within the bounds. In the displacements themselves: if a gap is far
+    /// larger than they are, nothing of them would remain in w.
     template <int dim>
     class ExtendedMajorant
     {
@@ -105,9 +105,9 @@ namespace Debond
       majorise()
       {
         const Eigen::VectorXd s = to_foundation().template cast<double>();
-        // Where Phi softens, majorants come to a minimum in the limit only.
-        // Next to it Newton steps with Phi'' get there, and where Phi does not
-        // soften both are the same.
+        // If Phi softens, majorants come to a minimum in the limit only. Next
+        // to it Newton steps with Phi'' get there, and if Phi does not soften
+        // both are the same.
         return majorant.touch(s, phi.subgradient(s), phi.second_derivative(s));
       }
 
@@ -149,7 +149,7 @@ namespace Debond
               if (held[i] == 0)
                 residual = std::max(residual, std::abs(r(i)));
             // All wrong nodes are exchanged at once, and one by one if that
-            // goes on for too long, which ends after finitely many steps.
+            // continues for too long, which ends after finitely many steps.
             if (rule.update(excess,
                             mu,
                             0.01 * Tolerance::epsilon *
@@ -396,7 +396,7 @@ namespace Debond
                       DofVector                &u)
   {
     const ElasticProblem<dim> &problem = scene.problem();
-    // All that is left of a body at rest is rounding, over which active sets
+    // All that remains of a body at rest is rounding, over which active sets
     // would wander.
     DofVector forces = problem.diagonal();
     forces.scale(u);
@@ -406,8 +406,7 @@ namespace Debond
         return {};
       }
     // What rounding may have changed is compared with twice the strain energy,
-    // so that refinement is done only where digits are at stake that are
-    // printed.
+    // so that refinement is done only if digits are at stake that are printed.
     double energy = 0.;
     if (problem.unknowns().has_lifting())
       energy = 2. * problem.fields().strain_energy(u, factors);
@@ -417,20 +416,21 @@ namespace Debond
         const Eigen::VectorXd s = problem.unknowns().contact().trace(u);
         energy = problem.load(factors) * u - phi.subgradient(s).dot(s);
       }
-    // Where nothing of the energy is known there is every reason to refine.
+    // If nothing of the energy is known, there is every reason to refine.
     const double rounding =
       energy > 0. ? rounding_of_energy(problem, factors, u) / energy : infinity;
     if (rounding <= allowed_energy_rounding(problem.unknowns().n_free_dofs()))
       return {};
 
-    // u is left as it is where the refinement fails, and a note says how many
-    // digits to trust.
+    // u stays as it is if the refinement fails, and a note says how many digits
+    // to trust.
     const RefinementResult refined =
       refine(problem, phi, factors, solver, interruption, u);
     std::ostringstream note;
     note.precision(1);
     note << std::scientific;
-    // All stresses of a body at rest, or off, are rounding: nothing is lost.
+    // All stresses of a body at rest, or of one that has detached, are
+    // rounding: nothing is lost.
     const bool has_stresses =
       !problem.unknowns().has_lifting() ||
       rounding * Tolerance::epsilon < Tolerance::no_stresses;

@@ -67,6 +67,8 @@ namespace Debond
     result.criterion        = minimum.residual;
     result.iterations       = static_cast<unsigned int>(minimum.history.size());
     result.majorise_history = minimum.history;
+    // Each iteration minimises one majorant, by linear systems of which those
+    // of multigrid take conjugate gradients.
     for (const MajoriseMinimiseIteration &iteration : minimum.history)
       result.linear_iterations += iteration.linear_iterations;
     return result;

@@ -251,7 +251,7 @@ namespace Debond
       result.u                  = solver->displacement();
       result.parts["expansion"] = timer.wall_time();
 
-      // The search starts from a minimum only. Where bonds alone hold the body
+      // The search starts from a minimum only. If bonds alone hold the body
       // there is none, since J may fall without end; without S and g it was
       // done on the coarser mesh that gave the start, and a note says what that
       // leaves open.
@@ -267,9 +267,9 @@ namespace Debond
           "fronts of bonds are as the search on coarser meshes left them; with "
           "Solver/Linear solver = direct it is done on the finest one");
 
-      // What rounding has done to u is repaired where it matters; only then is
-      // the condition of S of interest as well, and of a semidefinite S there
-      // is none. On small meshes the estimate takes 2 % of the solve.
+      // What rounding has done to u is repaired if it matters; only then is the
+      // condition of S of interest as well, and of a semidefinite S there is
+      // none. On small meshes the estimate takes 2 % of the solve.
       const RefinedResult refined = refine_result(scene,
                                                   *solver->correction(),
                                                   progress.interruption,
@@ -304,7 +304,7 @@ namespace Debond
     // Rigid motions that only bonds hold make A singular, and J may fall
     // without end once these bonds have broken. Only majorise-minimise can tell
     // that (its proximal steps come to repeat one rigid motion); a bundle
-    // method would go on without end, and a search or a proof of a global
+    // method would continue without end, and a search or a proof of a global
     // minimum would look for what need not exist.
     const ProblemParameters &problem = scene.parameters();
     const auto               refuse  = [&](const std::string &entry,
@@ -349,8 +349,7 @@ namespace Debond
         solve_contact(choice, parameters, scene, start, progress);
     progress.finish();
     // J is summed up from the strains and not from A u, whose rows nearly
-    // cancel; this keeps some three digits more. A body that comes off has no
-    // J.
+    // cancel; this keeps some three digits more. A body that detaches has no J.
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);
@@ -361,8 +360,8 @@ namespace Debond
       round_outwards(result.functional,
                      rounding_of_energy(scene.problem(), 1., result.u),
                      result.minimum);
-    // Where nothing lower was found, the state of the start is the result, and
-    // its J needs no second integral over the cells.
+    // If nothing lower was found, the state of the start is the result, and its
+    // J needs no second integral over the cells.
     if (result.is_searched && !result.is_replaced &&
         (result.minimum.search_trials > 0 || result.minimum.proof_attempted))
       result.functional_from_start = result.functional;

@@ -128,7 +128,7 @@ namespace Debond
           condensed_functional(condensed_problem(condensed, adhesion), s);
         BranchAndBoundParameters limits = proof_limits();
         // Nodes of the tree that wait keep their intervals. Branch and bound
-        // ends with a valid gap before they take the memory that is left.
+        // ends with a valid gap before they take the remaining memory.
         limits.maximum_bytes = memory_left(parameters.memory_limit);
         const BranchAndBoundResult proof =
           branch_and_bound(limits, lumped_problem(), s);
@@ -247,7 +247,7 @@ namespace Debond
       search_coarse_nodes()
       {
         // The cheapest first: the bound at the point takes one factorisation,
-        // and where it proves the result there is nothing to search for.
+        // and if it proves the result there is nothing to search for.
         if (try_bound_at_point())
           return;
         // Coarser spaces have no tangents.

@@ -26,8 +26,8 @@ namespace Debond
 
 
 
-    /// The factor of the first change where displacements are proportional to
-    /// the factor and bonds are at nodes. Then each bond comes to an end of its
+    /// The factor of the first change if displacements are proportional to the
+    /// factor and bonds are at nodes. Then each bond comes to an end of its
     /// piece at a multiple of the present factor, and no path has to be
     /// followed.
     template <int dim>
@@ -103,7 +103,7 @@ namespace Debond
 
 
 
-    /// The first change where bonds are at quadrature points between nodes, or
+    /// The first change if bonds are at quadrature points between nodes, or
     /// shear. On the way to it all bonds are linear springs, which S + E
     /// contains; nodes come into contact and leave it, and each straight piece
     /// of the way is searched for a point that reaches a kink.
@@ -126,8 +126,8 @@ namespace Debond
       const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
       problem.load += springs * last.s - here.subgradient(last.s);
       // Displacements along tangents have no bound, so that they are
-      // eliminated: they follow from s at each t by K_tt t_t = g_t(t) - K_tn s,
-      // with the stiffness K of body and springs. S is then the Schur
+      // eliminated: with the stiffness K of body and springs they follow from s
+      // and the load by K_tt u_t = g_t - K_tn s. S is then the Schur
       // complement, and its load is reduced in the same way.
       const Eigen::Index    n = bonds.n_nodes(), m = last.s.size() - n;
       const Eigen::MatrixXd to_tangents = stiffness.topRightCorner(n, m);

@@ -8,7 +8,7 @@ namespace Debond
 {
   namespace
   {
-    /// The parts of the work that is left that a search may take.
+    /// The parts of the remaining work that a search may take.
     constexpr double most_parts = 4.;
 
 
@@ -36,8 +36,8 @@ namespace Debond
         parameters.prove  = false;
       }
 
-      /// One of @p n_left searches that share the work that is left. Many ask
-      /// for less than their part, so that others may have several.
+      /// One of @p n_left searches that share the remaining work. Many ask for
+      /// less than their part, so that others may have several.
       void
       search(const LoadFactors factors,
              const std::size_t n_left,
@@ -50,7 +50,7 @@ namespace Debond
           most_parts * operations_left / double(n_left);
         point.which = improve(parameters, factors, point);
         operations_left -= point.which.operations;
-        // Where nothing is applied or prescribed, no gap either, no energy is
+        // If nothing is applied or prescribed, no gap either, no energy is
         // negative.
         if (scene.scene.problem().load(factors).linfty_norm() == 0.)
           point.which.kind = MinimumKind::global;
@@ -175,7 +175,7 @@ namespace Debond
       {
         if (interruption.requested())
           return branch;
-        // A full search is worth its time only where the neighbour has given
+        // A full search is worth its time only if the neighbour has given
         // something new.
         auto &[factors, point] = *entry;
         if (last != nullptr && search.start_from(*last, factors, point))

@@ -183,8 +183,8 @@ namespace Debond
       }
 
       /// Whether there are steps and the last one is verified. The path may be
-      /// shorter than the scene's: a signal, or a body that comes off, leaves
-      /// no step.
+      /// shorter than the scene's: a signal, or a body that detaches, leaves no
+      /// step.
       bool
       has_no_failure() const
       {
@@ -302,6 +302,8 @@ namespace Debond
       {
         if (steps.empty())
           {
+            // A body that detaches at the first factor has neither a state nor
+            // J.
             result.u.reinit(scene.problem().unknowns().n_dofs());
             result.functional = std::numeric_limits<double>::quiet_NaN();
           }
@@ -324,6 +326,8 @@ namespace Debond
         if (solver)
           return;
         const dealii::Timer timer;
+        // A factorisation, or the levels of multigrid, serve all remaining
+        // steps.
         solver = make_contact_solver(answer.choice, settings.parameters, scene);
         if (!steps.empty())
           solver->start_from(progress.u);
@@ -365,7 +369,7 @@ namespace Debond
         observer(answer, verification);
       }
 
-      /// Returns whether there is a next step: not if the body comes off.
+      /// Returns whether there is a next step: not if the body detaches.
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
@@ -375,7 +379,11 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
+        // The bonds are those of this step: with the prescribed displacements
+        // at its factor, and with the memory of all steps before.
         const Solution minimum = minimise(factors, bonds);
+        // A signal within a step discards it, and the state is that of the step
+        // before. Of the first step there is nothing but what was reached.
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
           {
             interrupt("the path is not complete");
@@ -383,6 +391,8 @@ namespace Debond
           }
         result.add(minimum);
         result.message.clear();
+        // The body detaches, so that there is no state at this factor. The
+        // result remains that of the factor before.
         if (minimum.status == SolverStatus::comes_off)
           {
             result.comes_off_at = factors;
@@ -486,8 +496,8 @@ namespace Debond
       }
 
       /// Status and message of a step, by what the solver and the verification
-      /// say. Where rounding kept the solver from its tolerance the
-      /// verification decides.
+      /// say. If rounding kept the solver from its tolerance, the verification
+      /// decides.
       void
       judge(const Solution          &minimum,
             const Verification<dim> &verification,
@@ -568,6 +578,9 @@ namespace Debond
       void
       add_global(const LoadFactors factors, const BranchPoint &point)
       {
+        // A point of the branch is refined and verified as a state of the path
+        // is. Its bonds have no memory, as there is a branch only for bonds
+        // that heal.
         const CondensedScene<dim>   condensed_scene = condensed();
         const AdhesionIntegral<dim> bonds_there =
           condensed_scene.bonds(factors);
@@ -672,6 +685,8 @@ namespace Debond
     if (!parameters.factors.empty())
       return follow_load_path(
         parameters, settings, std::move(begun), observer, log.out);
+    // On a refined mesh the minimum is sought from the state of the mesh
+    // before; without one the start is rest, or what coarser spaces give.
     const DofVector &start = begun.meshes.start;
     begun.solution         = solve(begun.choice,
                            settings.parameters,

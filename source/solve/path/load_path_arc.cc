@@ -119,8 +119,8 @@ namespace Debond
     const auto                      add = [&](const bool is_stable) {
       const LoadFactors factors = varied.at(sign * path.t() + 0.); // no -0
       // Bonds that do not heal remember the largest opening of the way, but a
-      // bond that sits at its kink, where the arc goes on with a smaller pull,
-      // has not broken yet.
+      // bond that sits at its kink, from which the arc continues with a smaller
+      // pull, has not broken yet.
       AdhesionIntegral<dim> here = scene.bonds(factors);
       here.set_memory(memory);
       if (!parameters.bonds_heal)

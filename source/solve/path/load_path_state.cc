@@ -111,6 +111,9 @@ namespace Debond
            ++k)
         state.other_parts.emplace_back(as_title(verification.state_names[k]),
                                        0.);
+      // Without adhesion what is open counts as broken, as nothing holds it. If
+      // some of the boundary has bonds, what has none has a part of its own
+      // beside what is broken.
       const auto part = [&](const BondState branch) -> double & {
         switch (branch)
           {

@@ -191,8 +191,8 @@ namespace Debond
       resolved_force =
         std::max(resolved_force, std::abs(factor) * of_supports.linfty_norm());
     resolved_force *= Tolerance::negligible_force;
-    // Means over all pieces with a name are reported for every scene, probes
-    // where it asks for them.
+    // Means over all pieces with a name are reported for every scene, probes if
+    // it asks for them.
     piece_means  = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
@@ -271,8 +271,8 @@ namespace Debond
   void
   Scene<dim>::add_contact()
   {
-    // The law as pieces, the quadrature of int j_1(v_nu) over Gamma_C, and
-    // where bonds vary their scales at its points together make Phi(s).
+    // The law as pieces, the quadrature of int j_1(v_nu) over Gamma_C, and if
+    // bonds vary their scales at its points together make Phi(s).
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);

@@ -127,7 +127,9 @@ namespace Debond
                wanted;
     };
     conditions.tangential_displacement = or_free(given.tangential_displacement);
-    const auto &own                    = given.tangential_displacements;
+    // A boundary with an entry of its own has that in place of what holds for
+    // all.
+    const auto &own = given.tangential_displacements;
     for_contact_boundaries(
       given,
       entries_of("Contact law/Tangential displacement", own),
@@ -246,6 +248,8 @@ namespace Debond
     for (const auto &[name, texts] : given.law.boundaries)
       {
         bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
+        // Errors name an entry that the scene has for the boundary, that of the
+        // stiffness first.
         for (const std::string entry : {"Bond stiffness", "Bond threshold"})
           if (const std::string path = "Contact law/" + entry + ' ' + name;
               given.locations.count(path) > 0)
@@ -274,6 +278,8 @@ namespace Debond
       shear.stiffness = number / law.second_derivative(0.);
     if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
       {
+        // The fracture energy of the law is its largest value, which it has
+        // when bonds are broken.
         const double whole       = number / law.pieces().largest_value();
         const double power       = given.shear.exponent;
         const bool   is_relative = shear.is_relative;
@@ -314,6 +320,7 @@ namespace Debond
     std::vector<double> factors;
     for (unsigned int k = 0; k < load_path.factors.size(); ++k)
       factors.push_back(load_path.at(k).displacements);
+    // Without a path there is the whole load, whose factor is 1.
     return factors.empty() ? std::vector<double>{1.} : factors;
   }
 
