@@ -312,6 +312,8 @@ namespace Debond
       std::unique_ptr<CorrectionSolver>
       correction() override
       {
+        // The refinement truncates the same cycle for its own contact set, and
+        // the next minimisation prepares it anew.
         return std::make_unique<MultigridCorrection>(problem, *cycle);
       }
 

@@ -58,6 +58,9 @@ namespace Debond
   Eigen::SparseMatrix<double>
   ContactUnknowns::block_of(const dealii::SparseMatrix<double> &A) const
   {
+    // The columns of A that belong to the contact boundary are found by a map
+    // from the numbers of unknowns to those of nodes, since rows of A list all
+    // neighbours.
     std::unordered_map<dealii::types::global_dof_index, unsigned int> nodes;
     for (unsigned int i = 0; i < dofs.size(); ++i)
       nodes[dofs[i]] = i;

@@ -38,7 +38,8 @@ namespace Debond
           return;
         shift = std::max(10. * shift, Tolerance::epsilon);
       }
-    // Any positive definite matrix is a preconditioner.
+    // Any positive definite matrix is a preconditioner: a bad one costs
+    // iterations, but no accuracy.
     factor.emplace(matrix.diagonal().cwiseAbs().asDiagonal());
   }
 

@@ -127,6 +127,8 @@ namespace Debond
     Eigen::VectorXd       force_s = contact.trace(force);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
+        // The majorant is a parabola in s_i, least at s_i + force_i /
+        // stiffness_i or at the bound before it.
         const double stiffness = contact_block.coeff(i, i) + E.coeff(i, i);
         s(i) = std::min(contact.upper()(i), s(i) + force_s(i) / stiffness);
         if (s(i) == old_s(i))

@@ -35,9 +35,9 @@ namespace Debond
   {
     // With nodal quadrature Phi is a sum over the nodes. With other rules this
     // is an approximation, in which row sums move all stiffness to the
-    // diagonal, and which only guides a search. If bonds shear, each is a
-    // function of l = -sqrt(s^2 + r |t|^2) with the unknowns of its node:
-    // `bonds` of the result says to which bond an unknown belongs, and
+    // diagonal, and which guides a search but proves nothing. If bonds shear,
+    // each is a function of l = -sqrt(s^2 + r |t|^2) with the unknowns of its
+    // node: `bonds` of the result says to which bond an unknown belongs, and
     // `weights` what its square counts in l.
     const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
     const Eigen::VectorXd  weights = lumped_weights(adhesion);

@@ -148,6 +148,8 @@ namespace Debond
                const unsigned int dim,
                const double       n)
   {
+    // Without coarser meshes multigrid has levels of aggregates, which take
+    // more than those of meshes: the estimate is for these.
     const double with_multigrid =
       (bytes_of_mesh_and_matrix + memory_with_multigrid(dim, false)) * n;
     return wanted == LinearSolver::direct ?
@@ -216,9 +218,9 @@ namespace Debond
                        MethodChoice           &choice)
   {
     // Memory comes first, then time, both by the symbolic factorisation of this
-    // very matrix. A factorisation is preferred if it fits and does not take
-    // much longer, since with S and g there are a search and a proof on all
-    // contact nodes, and further loads cost little.
+    // very matrix. A factorisation is preferred if it fits and its operations
+    // are below a limit, since with S and g there are a search and a proof on
+    // all contact nodes, and further loads cost little.
     const ProblemParameters    &problem    = scene.parameters();
     const ElasticUnknowns<dim> &unknowns   = scene.problem().unknowns();
     const double                n          = unknowns.n_dofs();

@@ -331,6 +331,7 @@ namespace Debond
         solver = make_contact_solver(answer.choice, settings.parameters, scene);
         if (!steps.empty())
           solver->start_from(progress.u);
+        // If only bonds hold the body, S is semidefinite and has no condition.
         if (const Condensation *const condensed = solver->condensed();
             condensed && scene.problem().unknowns().is_held_by_supports())
           result.condition_estimate = condensed->condition_estimate();
@@ -364,6 +365,8 @@ namespace Debond
            const Verification<dim>     &verification,
            const LoadPathObserver<dim> &observer)
       {
+        // The observer gets the bonds as the step has left them, since the
+        // estimate of the error and the files are of these.
         answer.path_bonds =
           std::make_shared<const AdhesionIntegral<dim>>(bonds);
         observer(answer, verification);
@@ -504,6 +507,10 @@ namespace Debond
             LoadPathStep<dim>       &step)
       {
         const std::string own = location(step) + minimum.message;
+        // Either the method has failed, or what it found is not verified, or it
+        // is a minimum. A step of the first two kinds has a message, which ends
+        // the path. A method that has stagnated by rounding counts as a success
+        // if the verification holds, with one note for the whole path.
         if (!can_be_verified(minimum.status))
           step.message = result.message = own;
         else if (!is_verified(verification))

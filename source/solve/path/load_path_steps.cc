@@ -89,8 +89,8 @@ namespace Debond
         broken = change.broken_after;
 
         // The followed state may be above the lowest one known at its factor,
-        // by more than the digits that a search resolves: there the path has
-        // stayed in a minimum that is not global.
+        // beyond rounding: there the path has stayed in a minimum that is not
+        // global.
         if (step.global)
           {
             const double excess =

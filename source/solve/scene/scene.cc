@@ -271,8 +271,8 @@ namespace Debond
   void
   Scene<dim>::add_contact()
   {
-    // The law as pieces, the quadrature of int j_1(v_nu) over Gamma_C, and if
-    // bonds vary their scales at its points together make Phi(s).
+    // The law as pieces, the quadrature of int j_1(v_nu) over Gamma_C, and, if
+    // bonds vary, their scales at its points together make Phi(s).
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);

@@ -115,8 +115,8 @@ namespace Debond
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }
     // Bonds without stiffness, or whose first piece is no spring, bear no shear
-    // and leave the body free to slide. Without tangential unknowns the problem
-    // is smaller, and the same.
+    // and leave the body free to slide. Then the displacement along the
+    // boundary needs no unknowns of the contact problem.
     const auto or_free = [&](const TangentialDisplacement wanted) {
       double     stiffness;
       const bool is_none =
@@ -231,8 +231,7 @@ namespace Debond
                   const BoundaryConditions &conditions)
   {
     // A number is made a constant function: parsed expressions cost much more
-    // at each point, and most bonds differ by boundary only. Without a text
-    // there is no function, and the bonds of the law itself hold.
+    // at each point, and most bonds differ by boundary only.
     using Field      = typename BondField<dim>::Field;
     using Bonds      = typename BondField<dim>::Bonds;
     const auto field = [&](const std::string &text) -> Field {
@@ -245,6 +244,9 @@ namespace Debond
     };
     std::map<std::string, std::string> entries;
     std::map<std::string, Bonds>       bonds;
+    // The functions of a boundary with bonds of its own, by its name; ids of
+    // the mesh get them below, when it is known that no two of these boundaries
+    // overlap.
     for (const auto &[name, texts] : given.law.boundaries)
       {
         bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
