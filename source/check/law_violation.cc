@@ -64,8 +64,8 @@ namespace Debond
           scale.force = std::min(scale.force, strength);
         scale.force = std::max(scale.force, resolved(i));
         if (has_bonds)
-          // Up to its first kink the bond is taken for a spring, which F_i
-          // opens by this part of the threshold.
+          // The bond is taken for a spring that bears its strength at the first
+          // kink, so that F_i opens it by this part of the threshold.
           scale.length =
             std::min(scale.length,
                      threshold * std::min(1., scale.force / strength));
