@@ -27,7 +27,7 @@ namespace Debond
   /// Returns the places on a plane body where bonds that hold meet bonds that
   /// do not, or none, in the order of the faces: where they are opened by
   /// AdhesiveLaw::broken_beyond(), at a vertex where the scene's bonds begin,
-  /// or in the middle of a face at one end of which bonds are broken for good.
+  /// or in the middle of a face at one end of which there are none.
   /// They stay where they are when a crack closes. Solids have none.
   template <int dim>
   std::vector<dealii::Point<dim>>

@@ -96,10 +96,11 @@ namespace Debond
         const bool is_cut =
           work.requested() && result.kind != MinimumKind::global;
         result.operations = work.operations();
+        result.is_cut     = is_cut && !interruption.requested();
         if (is_cut || (result.kind != MinimumKind::best_known &&
                        result.kind != MinimumKind::global))
           result.kind = kind_without_search(adhesion, s, &condensed);
-        if (!is_cut || interruption.requested())
+        if (!result.is_cut)
           return;
         // The limit stops branch and bound in the way a signal does. Only the
         // signal is to be called an interruption.

@@ -12,6 +12,7 @@
 #include <debond/solve/path/load_path_arc.h>
 
 #include <numeric>
+#include <set>
 
 namespace Debond
 {
@@ -258,10 +259,16 @@ namespace Debond
               to_string(point.which.kind));
           });
         // A search that its limit has cut has a note.
-        const auto n_cut =
-          std::count_if(branch.begin(), branch.end(), [](const auto &entry) {
-            return !entry.second.which.notes.empty();
-          });
+        // What limits of work have left undone is said once for all factors,
+        // and what else a search or a proof notes once as well.
+        unsigned int          n_cut = 0;
+        std::set<std::string> others;
+        for (const auto &[factors, point] : branch)
+          if (point.which.is_cut)
+            ++n_cut;
+          else
+            others.insert(point.which.notes.begin(), point.which.notes.end());
+        result.notes.insert(result.notes.end(), others.begin(), others.end());
         if (n_cut > 0)
           table.section(words("the search had as much work as the path takes, "
                               "which was not enough at ",

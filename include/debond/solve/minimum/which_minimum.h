@@ -16,7 +16,8 @@ namespace Debond
     unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
 
-    double operations = 0.; ///< of the search (BoundQPResult::operations)
+    double operations = 0.;    ///< of the search (BoundQPResult::operations)
+    bool   is_cut     = false; ///< the search, by its limit of operations
 
     bool interrupted = false; ///< search or proof, by a signal
 
