@@ -22,12 +22,13 @@ class Case:
             self.lines.append(text[1:])
             self.place = (len(self.lines), "")
             return
-        path, value = text.split("=", 1)
-        *sections, entry = path.strip().split("/")
-        self.lines += ["subsection " + section for section in sections]
-        self.lines.append(f"set {entry} ={value}")
-        self.place = (len(self.lines), path.strip())
-        self.lines += ["end"] * len(sections)
+        for part in re.split(r" \| ", text):
+            path, value = part.split("=", 1)
+            *sections, entry = path.strip().split("/")
+            self.lines += ["subsection " + section for section in sections]
+            self.lines.append(f"set {entry} ={value}")
+            self.place = (len(self.lines), path.strip())
+            self.lines += ["end"] * len(sections)
 
     def add_message(self, words):
         line, path = (None, "") if words.startswith("! ") else self.place
@@ -49,13 +50,13 @@ def read_cases(file_name):
     cases = []
     for block in re.split(r"^(?=\[)", open(file_name).read(), flags=re.M)[1:]:
         header, *rows = [row for row in block.split("\n") if row and row[0] != "#"]
-        name, kind = re.fullmatch(r"\[(\w+)\] ?(\w*)", header).groups()
-        scenes, code = [rows], kind
-        if kind == "each":
-            common, code = [row for row in rows if "  !" not in row], None
+        name, each, code = re.fullmatch(r"\[(\w+)\]( each)? ?(\d*)", header).groups()
+        scenes = [rows]
+        if each:
+            common = [row for row in rows if "  !" not in row]
             scenes = [[*common, row] for row in rows if "  !" in row]
         for k, scene in enumerate(scenes):
-            case = Case(name + f"_{k}" * (kind == "each"), code)
+            case = Case(name + f"_{k}" * bool(each), code)
             for row in scene:
                 text, *words = re.split(r"(?:^|  )!(?=!? )", row, 1)
                 if text:
