@@ -212,7 +212,7 @@ def check(debond, cases, counts, is_mesh):
 def main(debond, prm, n):
     draw = random.Random(20260702)
     bases = [pathlib.Path(file).read_text().split("\n")
-             for folder in ("", "hard", "cookbook")
+             for folder in ("", "cookbook")
              for file in sorted((prm / folder).glob("*.prm"))]
     bases += [scene(text.replace("\n", "|").split("|")) for text in SMALL] * 6
     bodies = [(msh.box((4, 2), (2., 1.)), version, odd) for version, odd in

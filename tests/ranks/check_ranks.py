@@ -20,7 +20,7 @@ DEBOND, PRM = sys.argv[1:3]
 RANKS = [int(n) for n in sys.argv[3:]]
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
                    OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_btl_tcp_if_include="lo")
-MM = ["Solver/Method=majorise minimise"]
+AUTOMATIC, MM = ["Solver/Method=automatic"], ["Solver/Method=majorise minimise"]
 BAR = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=16, 4, 4",
        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
 TRI = ["Mesh/Source=file", "Mesh/File=tri.msh"]
@@ -86,9 +86,14 @@ SCENES = [
     ("two materials", "cookbook/bimaterial-strip", []),
     ("held by bonds", "cookbook/tape", []),
     ("comes off", "cookbook/tack", []),
-    ("slender", "hard/very-slender", []),
-    ("two sides", "hard/two-sides", []),
-    ("bonds by place", "hard/patches", []),
+    ("slender", "benchmark-40x4",
+     AUTOMATIC + ["Mesh/Lengths=0.4, 0.002", "Mesh/Cells=200, 1"]),
+    ("two sides", "benchmark-40x4", AUTOMATIC + [
+        "Boundary conditions/Clamped boundaries=left", "Contact law/Tangential displacement=free",
+        "Boundary conditions/Contact boundary=bottom, right"]),
+    ("patches", "benchmark-40x4", AUTOMATIC + [
+        "Mesh/Cells=13, 2", "Contact law/Bond stiffness=2000", "Contact law/Bond threshold=1e-3",
+        "Loads/Traction top=0; if(x<0.1,1.1,if(x<0.2,-0.6,if(x<0.3,1.3,-0.5)))"]),
     ("stepped", "stepped", []),
     ("softening", "benchmark-40x4", MM + SOFT),
     ("softening path", "benchmark-40x4", MM + SOFT + [

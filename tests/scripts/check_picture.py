@@ -152,14 +152,17 @@ def breaks(figure):
             for y in line.get_ydata() if y < 0}
 
 
+FREE = "Contact law/Tangential displacement=free"
 # Where nodes are along curved sides, around corners and on several sides.
 for scene, settings, name, pieces, length in (
         ("cookbook/ring.prm", [], "length along the contact boundary", 1, numpy.pi * 10),
-        ("hard/two-sides.prm", [], "length along the contact boundary", 1, 0.44),
-        ("hard/two-sides.prm", ["Boundary conditions/Contact boundary=left, right",
+        ("benchmark-40x4.prm", [FREE, "Boundary conditions/Contact boundary=bottom, right",
+                                "Boundary conditions/Clamped boundaries=left"],
+         "length along the contact boundary", 1, 0.44),
+        ("benchmark-40x4.prm", [FREE, "Boundary conditions/Contact boundary=left, right",
                                 "Boundary conditions/Clamped boundaries=bottom"],
          "y", 2, 0.04),
-        ("hard/two-sides.prm", ["Boundary conditions/Contact boundary=left, top",
+        ("benchmark-40x4.prm", [FREE, "Boundary conditions/Contact boundary=left, top",
                                 "Boundary conditions/Clamped boundaries=bottom",
                                 "Mesh/Rotation=30"],
          "length along the contact boundary", 1, 0.44),
