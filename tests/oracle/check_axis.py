@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_axis.py DEBOND [COUNT [FIRST]]: bodies of revolution and foundations with a direction,
-beside finite elements of axisymmetric.py, which share nothing with the program: random boxes and
+beside finite elements of oracle.py, which share nothing with the program: random boxes and
 frustums (S, g, J, law, displacements, forces, stresses, words, proofs), paths and arcs among all
 stationary states, domes on a plane, bodies that are glued, refined meshes; and closed forms."""
 import itertools
@@ -9,12 +9,13 @@ import pathlib
 import re
 import shutil
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
-from axisymmetric import LAW, SUPPORTS, Body
+from oracle import LAW, SUPPORTS, Body
 from random_scenes import Draw
 from run_scenes import NO_PICTURES, Scenes, scene_text
 from vtu import Piece
@@ -25,6 +26,12 @@ AXIS = ["Symmetry=axis", SUPPORTS + "Clamped boundaries="]
 ISOTROPIC = ["Material/Young modulus=70", "Material/Poisson ratio=0.3"]
 DEGREE_2 = ["Mesh/Degree=2", LAW + "Quadrature=gauss 3"]
 MM = "Solver/Method=majorise minimise"
+
+
+def body_of(settings, mesh, pairs=()):
+    """In doubles; points, triangles and sides of the mesh."""
+    return Body(dict(s.split("=", 1) for s in settings), SimpleNamespace(
+        points=mesh[0], simplices=mesh[1], sides=mesh[2]), float, pairs)
 
 
 def vector(*values):
@@ -119,8 +126,10 @@ def random_scene(draw, name):
         "nodal", "nodal", "nodal", "midpoint"] * (degree == 1))
     k = E / length * draw.magnitude(-1.5, 1.)
     s[LAW + "Bond stiffness"], s[LAW + "Bond threshold"] = value(k), "1e9"
-    body = Body([f"{key}={value}" for key, value in s.items()], *mesh)
-    s0 = body.minimise([True] * len(body.bonds))
+    body = body_of([f"{key}={value}" for key, value in s.items()], mesh)
+    s0 = body.is_usable and body.minimise([0] * len(body.bonds))
+    if s0 is False or s0 is None:
+        return None  # nothing holds the body
     M = (float(np.abs(s0).max(initial=0.)) or size / E * length) * draw.uniform(.3, 1.3)
     s[LAW + "Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
     if s[LAW + "Law"] == "winkler":
@@ -137,7 +146,7 @@ def random_scene(draw, name):
     if draw.chance(.25):
         s[LAW + "Initial gap"] = value(M)
     # What nothing but bonds holds is not for all methods.
-    moduli = np.linalg.eigvalsh(body.S) if body.contact else [1.]
+    moduli = np.linalg.eigvalsh(body.S) if body.contact_dofs else [1.]
     s["Solver/Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
     if moduli[0] < 1e-9 * moduli[-1]:
         s["Solver/Method"] = "majorise minimise"
@@ -178,26 +187,52 @@ def run(numbers, all_settings):
 def state_of(body, result):
     """s from the profile in the order of the body's unknowns, and that order: of those that a
     corner may have, the one with the program's S."""
-    index, size = {dof: k for k, dof in enumerate(body.contact)}, np.abs(body.points).max()
+    size = np.abs(body.points).max()
     rows = [row for row in result["profile"] if row["state"] != "held"]
-    choices = [[slot for slot, dof in body.slots.items() if not isinstance(dof, np.ndarray)
-                and np.hypot(*(body.points[slot[0]] - [row["x"], row["y"]])) < 1e-9 * size]
+    choices = [[slot for slot in body.node_of
+                if np.hypot(*(body.points[slot[0]] - [row["x"], row["y"]])) < 1e-9 * size]
                for row in rows]
     found = None, None, np.inf
     for slots in itertools.product(*choices):
-        if len(set(slots)) == len(slots) == len(index):
-            order = [index[body.slots[slot]] for slot in slots]
+        if len(set(slots)) == len(slots) == len(body.node_of):
+            order = [body.node_of[slot] for slot in slots]
             off = np.abs(result["S"] - body.S[np.ix_(order, order)]).max(initial=0.)
             if off < found[2]:
                 s = np.zeros(len(order))
-                s[order] = [row["u_nu"] - body.gap[slot] for row, slot in zip(rows, slots)]
+                s[order] = [row["u_nu"] - body.gaps[v][k] for row, (v, k) in zip(rows, slots)]
                 found = s, order, off
     return found[:2]
 
 
+def forces_of(body, u):
+    """Of all that holds the body on its nodes, on contact edges on the coefficients."""
+    forces = (body.strain_forces(u) - body.applied).reshape(-1, 2)
+    for v, ends in body.ends.items():
+        forces[list(ends)] += forces[v] / 4
+        forces[v] /= 2
+    return forces
+
+
+def largest_von_mises(body, u):
+    """Of the mean stresses of cells."""
+    (C, heat), largest = body.material(), 0.
+    for cell in body.cells:
+        stress = sum(weight * (C @ (B @ u.reshape(-1, 2)[cell].ravel()) - heat * body.value(
+            body.entry("Loads/Temperature change"), p))
+                     for weight, (B, _, p, _) in body.strains(cell))
+        rest = stress[:3] - stress[:3].mean()
+        largest = max(largest, np.sqrt(1.5 * (rest @ rest + 2 * stress[3]**2)))
+    return largest
+
+
+def mean(body, u, name):
+    return sum(w * phi @ u.reshape(-1, 2)[face.nodes] for face in body.sides[name]
+               for phi, w, _ in body.on(face)) / body.area(name)
+
+
 def judge(settings, mesh, result, draw):
     """All that a run says beside the body."""
-    body = Body(settings, *mesh)
+    body = body_of(settings, mesh)
     is_rough = "multigrid" in settings[-1] or "multigrid" in str(result["linear_solver"]) or (
         "bundle" in result["method"])
     loose = 1000. if is_rough else 1.
@@ -210,32 +245,37 @@ def judge(settings, mesh, result, draw):
         close("S", np.abs(result["S"] - own).max(), 0., 1e-9, np.abs(own).max())
         close("g", np.abs(result["g"].ravel() - body.g[order]).max(), 0., 1e-9,
               np.abs(body.g).max() + np.abs(own).max() * np.abs(s).max())
-    J, size, u = body.J(s), body.size(s), body.displacement(s)
-    forces, length = body.forces(u), np.abs(u).max()
-    scale = np.abs(forces).max() + np.abs(body.f).max()
+    J, size, u = body.condensed_functional(s), body.size(s), body.displacement(s)
+    forces, length = forces_of(body, u), np.abs(u).max()
+    scale = np.abs(forces).max() + np.abs(body.applied).max()
     close("J", result["functional"], J, 1e-9 * loose, size)
-    shift = 1e-10 * loose * np.abs(s).max() + 1e-12 * max(map(abs, body.gap.values()))
-    check("law", body.violation(s, shift) < 1e-8 * loose, body.violation(s, shift))
+    shift = 1e-10 * loose * np.abs(s).max() + 1e-12 * max(
+        abs(gap) for gaps in body.gaps.values() for gap in gaps)
+    force = body.g - body.S @ s
+    violation = max(body.law_violation(s, force, shift, 0 * s), s.max() * np.abs(
+        body.S).max()) / np.abs([body.g, force]).max()
+    check("law", violation < 1e-8 * loose, violation)
     for name, faces in body.sides.items():
         if body.area(name):
-            for x, y in zip(result["mean_displacements"][name], body.mean(u, name)):
+            for x, y in zip(result["mean_displacements"][name], mean(body, u, name)):
                 close("mean " + name, x, y, 1e-8 * loose, length)
-        nodes = {v for nodes, *_ in faces for v in nodes}
+        nodes = {v for face in faces for v in face.nodes}
         at_axis = int(min(body.points[v][0] for v in nodes) == 0.)
         for x, y in list(zip(result["probes"].get("force_" + name, []), sum(
                 forces[v] for v in nodes)))[at_axis:]:
             close("force " + name, x, y, 1e-8 * loose, scale)
-    close("stress", result["largest_von_mises"], body.largest_von_mises(u), 1e-6 * loose)
-    close("applied force", result["applied_force"][1], body.f[1::2].sum(), 1e-9, scale)
+    close("stress", result["largest_von_mises"], largest_von_mises(body, u), 1e-6 * loose)
+    close("applied force", result["applied_force"][1], body.applied[1::2].sum(), 1e-9, scale)
     close("reactions", result["clamped_reaction"][1] + result["contact_reaction"][1],
           forces[:, 1].sum(), 1e-8 * loose, scale)
     check("balance", result["force_imbalance"] < 1e-9 * loose, result["force_imbalance"])
     word = result["minimum"]["state"]
     for _ in range(20 * (word != "stationary")):
         d = np.array([draw.uniform(-1., 1.) for _ in s]) * np.abs(s).max() * 1e-6
-        check(f"{word}: J rises", body.J(np.minimum(s + d, 0.)) >= J - 1e-11 * size)
+        check(f"{word}: J rises", body.condensed_functional(np.minimum(s + d, 0.))
+              >= J - 1e-11 * size)
     if body.of[LAW + "Law"] in ("winkler", "none"):
-        least = min(map(body.J, body.minima(draw)), default=np.inf)
+        least = min(map(body.condensed_functional, body.all_minima(draw)[0]), default=np.inf)
         check("above the least", word != "global" or J <= least + 1e-8 * size, (J, least))
         bound = (result.get("proof") or {}).get("lower_bound")
         check("lower bound", bound is None or bound <= least + 1e-10 * size, (bound, least))
@@ -245,10 +285,9 @@ def check_random(count=60, first=0):
     drawn = []
     for number in range(first, first + count):
         draw = Draw(number)
-        try:
-            drawn.append((number, draw, *random_scene(draw, f"random-{number}")))
-        except (np.linalg.LinAlgError, TypeError):
-            pass  # nothing holds the body
+        scene = random_scene(draw, f"random-{number}")
+        if scene:
+            drawn.append((number, draw, *scene))
     counts = {}
     for (number, draw, settings, mesh), result in zip(drawn, run(
             [d[0] for d in drawn], [d[2] for d in drawn])):
@@ -266,21 +305,23 @@ def check_random(count=60, first=0):
 def stationary(body, factor, are_lasting, kinks):
     """J, s and the energy of broken bonds: of all choices of bonds that hold, are broken (for
     good: anywhere) or are at the threshold, and of nodes that touch."""
-    body.condense(factor)
-    n = len(body.contact)
+    body.set_loads(factor)
+    n = len(body.contact_dofs)
     for kinds in itertools.product(("holds", "broken", "kink")[:2 + kinks], repeat=len(body.bonds)):
-        Q, g, fixed, constant = body.S.copy(), body.g.copy(), {}, body.constant
-        broken = 0.
+        Q, g, fixed = body.S.copy(), body.g.copy(), {}
+        constant, broken = body.constant + body.condensed_constant, 0.
         for kind, b in zip(kinds, body.bonds):
-            k, M = b.weight * b.stiffness, b.law.threshold
+            (k, _), M, row = b.branches[0], b.threshold, np.zeros(n)
+            for i, phi in b.nodes:
+                row[i] = phi
             if kind == "holds":
-                Q += k * np.outer(b.row, b.row)
-                g -= k * b.held * b.row
-                constant += k * b.held**2 / 2
+                Q += k * np.outer(row, row)
+                g -= k * b.constant * row
+                constant += k * b.constant**2 / 2
             else:
-                broken += b.weight * b.law.energy(M)
-            if kind == "kink" and b.row.any():
-                fixed[int(np.argmax(b.row))] = -M - b.held, k * M
+                broken += b.branches[-1][1]
+            if kind == "kink" and row.any():
+                fixed[int(np.argmax(row))] = -M - b.constant, k * M
         noise = 1e-7 * np.abs(g).max()
         for touching in itertools.product((False, True), repeat=n):
             if kinds.count("kink") > len(fixed) or any(touching[i] for i in fixed):
@@ -292,11 +333,11 @@ def stationary(body, factor, are_lasting, kinks):
                 continue
             s[rest] = np.linalg.solve(Q[np.ix_(rest, rest)], (g - Q @ s)[rest])
             force, near = g - Q @ s, 1e-7 * (np.abs(s).max() + max(
-                b.law.threshold for b in body.bonds))
+                b.threshold for b in body.bonds))
             if s.max() <= near and force[list(touching)].min(initial=0.) >= -noise and all(
                     -pull - noise <= force[i] <= noise for i, (_, pull) in fixed.items()) and all(
-                        b.opening(s) <= b.law.threshold + near if kind == "holds" else
-                        are_lasting or b.opening(s) >= b.law.threshold - near
+                        -b.trace(s) <= b.threshold + near if kind == "holds" else
+                        are_lasting or -b.trace(s) >= b.threshold - near
                         for kind, b in zip(kinds, body.bonds)):
                 yield constant + s @ Q @ s / 2 - g @ s + broken, s, broken
 
@@ -327,18 +368,18 @@ def check_path(number):
             "Load path/Bonds heal=" + str(not is_lasting).lower(), "Load path/Global branch=" + (
                 "none" if is_lasting else "prove" if is_nodal else "search"),
             "Load path/Arc=" + str(is_nodal and not is_lasting).lower()]
-    result, body = scenes.solve(*settings, *path), Body(settings, *mesh)
+    result, body = scenes.solve(*settings, *path), body_of(settings, mesh)
     check("arrives", result["status"] in ("success", "comes off"), result["errors"])
     for row in result["path"]:
         at = f"factor {row['factor']}"
         found = list(stationary(body, row["factor"], is_lasting, False))
-        size = max(abs(J) for J, *_ in found) + body.size(np.zeros(len(body.contact)))
+        size = max(abs(J) for J, *_ in found) + body.size(0 * body.g)
         near = [s for J, s, broken in found if abs(J - row["J"]) < 1e-8 * size and (
             not is_lasting or abs(broken - row["dissipated_energy"]) < 1e-8 * size)]
         check(at, near, (row["J"], [J for J, *_ in found]))
         check(at + ": energies", any(
-            abs(row["unit_load_work"] - body.f @ u) < 1e-6 * size
-            and abs(row["elastic_energy"] - u @ body.K @ u / 2) < 1e-6 * size
+            abs(row["unit_load_work"] - body.unit_loads @ u) < 1e-6 * size
+            and abs(row["elastic_energy"] - u @ body.strain_forces(u) / 2) < 1e-6 * size
             for u in map(body.displacement, near)), row)
         if not is_lasting:
             least = min(J for J, *_ in found)
@@ -347,7 +388,7 @@ def check_path(number):
                   (row["global_J"], least))
     for row in result["arc"]:
         found = [J for J, *_ in stationary(body, row["factor"], False, True)]
-        size = max(map(abs, found), default=0.) + body.size(np.zeros(len(body.contact))) + 1e-9
+        size = max(map(abs, found), default=0.) + body.size(0 * body.g) + 1e-9
         check(f"arc {row['factor']}", any(abs(J - row["J"]) < 1e-6 * size for J in found),
               (row["J"], found))
 
@@ -355,9 +396,9 @@ def check_path(number):
 # ------------------------------------------------------------------ other bodies
 
 
-def same_J(name, settings, body, result, starts):
-    """The J of a run is that of a descent."""
-    values = [body.J(s) for s in starts(body) if s is not None]
+def same_J(name, body, result, minima):
+    """The J of a run is that of a minimum, or of a descent from rest."""
+    values = [body.condensed_functional(s) for s in minima]
     check(name, result["status"] == "success" and values and min(
         abs(J - result["functional"]) for J in values) < 1e-9 * abs(values[0]),
           (result.get("functional"), values, result["errors"]))
@@ -373,8 +414,8 @@ def check_domes():
         settings = [*entries, *AXIS, *ISOTROPIC, *more, SUPPORTS + "Contact boundary=bottom",
                     SUPPORTS + "Foundation normal=0; -1", LAW + "Initial gap=y",
                     SUPPORTS + "Displacement top=free; -0.05", LAW + "Tangential displacement=free"]
-        same_J(f"{n}, {more}", settings, Body(settings, *mesh), scenes.solve(*settings),
-               lambda body: body.minima(Draw(1)))
+        body = body_of(settings, mesh)
+        same_J(f"{n}, {more}", body, scenes.solve(*settings), body.all_minima(Draw(1))[0])
 
 
 def check_cuts():
@@ -396,9 +437,9 @@ def check_cuts():
                     SUPPORTS + "Clamped boundaries=bottom", SUPPORTS + "Contact boundary=cut_1",
                     "Loads/Traction top=0.2; 0.5*(1+x)", LAW + "Bond stiffness=60",
                     LAW + "Bond threshold=0.05", MM, "Solver/Search=none", *more]
-        same_J(f"cut, {more}", settings, Body(settings, points, triangles, sides, [
-            (up, v) for v, up in upper.items()]), scenes.solve(*settings),
-               lambda body: [body.descend([True] * len(body.bonds))])
+        body = body_of(settings, (points, triangles, sides), [(up, v) for v, up in upper.items()])
+        same_J(f"cut, {more}", body, scenes.solve(*settings),
+               [body.descend([0] * len(body.bonds))])
 
 
 def check_refined():
@@ -423,8 +464,8 @@ def check_refined():
                         if points[a][axis] == points[b][axis] == value]
                  for side, axis, value in (("right", 0, 2.), ("bottom", 1, 0.), ("top", 1, 1.))}
         check("levels", len(result["levels"]) > 1)
-        same_J("refined", settings, Body(settings, points, cells, sides), result,
-               lambda body: [body.descend([True] * len(body.bonds))])
+        body = body_of(settings, (points, cells, sides))
+        same_J("refined", body, result, [body.descend([0] * len(body.bonds))])
 
 
 def check_directions():

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_shapes.py DEBOND [COUNT [FIRST [NUMBER]]]: random bodies in 2D and 3D: boxes,
 and from Gmsh files trapezoids, tapers, arches, wavy strips, Ls, steps, plates with a
@@ -24,9 +24,11 @@ import subprocess
 import sys
 import tempfile
 
+import numpy as np
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from oracle import EPSILON, EXACT, ZERO, dot, inverse, make_scene
-from random_scenes import Draw
+from oracle import EPSILON, EXACT, ZERO, dot, inverse
+from random_scenes import Draw, make_scene
 from vtu import Piece
 
 SECONDS_FOR_A_SCENE = 30  # of the processor: a busy machine takes longer
@@ -60,7 +62,7 @@ def read_displacement(body):
     """u in the frames of the body, from displacement.txt, whose order is that in which
     the cells of body.vtu come to their points; what body.vtu has must be the same to
     single precision."""
-    dim, points = body.dim, body.scene.mesh.points
+    dim, points = body.dim, body.mesh.points
     piece = Piece("output/body.vtu")
     first = {}
     for k in range(piece.n_points):
@@ -84,7 +86,7 @@ def read_displacement(body):
         require(error <= 1e-6 * size, "wrong success: body.vtu",
                 f"differs from displacement.txt by {error:.1e} of {size:.1e}")
         u[dim * v:dim * v + dim] = [dot(row, cartesian) for row in body.rows[v]]
-    return u
+    return np.array(u)
 
 
 def check_profile(body, s, force, tolerance, of_displacements):
@@ -98,7 +100,7 @@ def check_profile(body, s, force, tolerance, of_displacements):
     for (v, number), i in body.node_of.items():
         at = [row for row in rows if math.dist(
             [row[x] for x in "xyz"[:body.dim]], body.points[v])
-            <= 1e-9 * body.scene.mesh.length]
+            <= 1e-9 * body.mesh.length]
         gap = body.gaps[v][number]
         # At a corner there are several.
         require(any(abs(row["u_nu"] - s[i] - gap) <= of_displacements
@@ -107,25 +109,6 @@ def check_profile(body, s, force, tolerance, of_displacements):
                     for row in at), "wrong success: contact_profile.csv",
                 f"no row with u_nu = {s[i] + gap:.6e}, force {force[i]:.6e}, gap "
                 f"{gap:.6e}, but {at}")
-
-
-def law_violation(body, s, force, shift, rounding):
-    """The largest distance of a force from what bonds and foundation allow at
-    displacements within shift of s."""
-    lower, upper = [ZERO] * len(s), [ZERO] * len(s)
-    for point in body.bonds:
-        trace = point.trace(s)
-        pulls = [point.pull(t) for t in
-                 (trace - shift, trace, min(trace + shift, ZERO))]
-        for i, phi in point.nodes:
-            lower[i] += phi * min(pulls)
-            upper[i] += phi * max(pulls)
-    violation = ZERO
-    for i, x in enumerate(s):
-        if x < -shift:
-            violation = max(violation, force[i] - upper[i] - rounding[i])
-        violation = max(violation, lower[i] - force[i] - rounding[i])
-    return violation
 
 
 def check_reactions(body, summary, residual, tolerance):
@@ -139,8 +122,7 @@ def check_reactions(body, summary, residual, tolerance):
         for k, row in enumerate(body.rows[v]):
             if body.kinds[dim * v + k] != "free":
                 sums[:] = [x + e * residual[dim * v + k] for x, e in zip(sums, row)]
-    pairs = {"applied_force": [sum(load[k] for load in body.applied)
-                               for k in range(dim)],
+    pairs = {"applied_force": [sum(body.applied[k::dim]) for k in range(dim)],
              "clamped_reaction": supports, "contact_reaction": contact}
     printed = {name: summary[name] for name in pairs}
     if any(point.is_held for point in body.bonds) or (
@@ -156,15 +138,15 @@ def check_reactions(body, summary, residual, tolerance):
 
 
 class Result:
-    """Of the program, with all that the check finds of it."""
+    """Of the program, with all that the check finds of it; M is the size of thresholds."""
 
-    def __init__(self, body, summary):
-        self.body, self.summary = body, summary
+    def __init__(self, body, summary, M):
+        self.body, self.summary, self.M = body, summary, EXACT(M)
         self.word = summary["minimum"]["state"]
         self.is_rough = summary["method"] != "majorise minimise" or (
             summary["linear_solver"] == "multigrid")
         self.u = u = read_displacement(body)
-        self.s = body.traces(u)
+        self.s = np.array(body.traces(u))
         self.residual = [a - f for a, f in zip(body.multiply(u), body.f)]
         self.largest = max(map(abs, self.residual))
         self.size = max(map(abs, u))
@@ -173,8 +155,8 @@ class Result:
         # Gradients are of differences of places, which are rounded where they are.
         self.noise = [100 * (of_u + min(of_G, BETTER * self.largest)) for of_u, of_G in
                       zip(body.rounding(u), body.rounding(body.G))]
-        self.force = [-self.residual[d] for d in body.contact_dofs]
-        self.of_force = [self.noise[d] for d in body.contact_dofs]
+        self.force = np.array([-self.residual[d] for d in body.contact_dofs])
+        self.of_force = np.array([self.noise[d] for d in body.contact_dofs])
         # The law is relative to what the bonds of a contact node bear.
         self.strength = max(body.strengths)
         largest_contact = max(max(map(abs, self.force)), self.largest / 1000)
@@ -190,14 +172,14 @@ class Result:
         body, s, size, largest = self.body, self.s, self.size, self.largest
         inside = max((abs(self.residual[d]) - self.noise[d] for d in body.free_dofs),
                      default=ZERO)
-        lengths = PROMISE * (min(EXACT(body.scene.M) * min(
+        lengths = PROMISE * (min(self.M * min(
             1, self.scale / self.strength), size) if self.strength else size)
         # s comes from Cartesian components, which are rounded.
         lengths = max(lengths, 8 * EPSILON * size)
-        violation = law_violation(body, s, self.force, lengths, self.of_force)
+        violation = body.law_violation(s, self.force, lengths, self.of_force)
         # Where the bundle method stops a bond may be within lengths of its threshold.
-        tight = ZERO if self.is_rough else law_violation(
-            body, s, self.force, EXACT("1e-10") * size, self.of_force)
+        tight = ZERO if self.is_rough else body.law_violation(
+            s, self.force, EXACT("1e-10") * size, self.of_force)
         # In Cartesian components beside gaps, which are rounded.
         of_gaps = 4 * EPSILON * max(map(abs, body.G))
         fixed = max((abs(self.u[d] - body.G[d]) - of_gaps for d in range(body.n)
@@ -228,7 +210,7 @@ class Result:
         minima, are_all = body.all_minima(draw)
         J_of_own = body.condensed_functional(own)
         least = min([J_of_own] + [body.condensed_functional(s) for s in minima])
-        energy = body.condensed_functional([ZERO] * len(self.s)) - least
+        energy = body.condensed_functional(ZERO * self.s) - least
         J, terms = body.functional(self.u)
         printed = EXACT(self.summary["functional"])
         can_change = body.bonds_can_change()
@@ -263,24 +245,21 @@ class Result:
         return f"solved, {word}" + ("" if is_least else " above the least"), detail
 
 
-def check_path(scene, body, draw):
+def check_path(body, draw):
     """Each J of a path is that of a minimum under its loads, and of the global branch the
     least one, where all minima are known."""
     with open("output/load_path.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     require(len(rows) == 3, "wrong success: load_path.csv", f"{len(rows)} rows")
-    before = [EXACT(1), EXACT(1)]
     for row in rows:
         factors = [EXACT(row["factor"]), EXACT(row["displacement_factor"])]
-        scene.scale_loads(*(float(a / b) for a, b in zip(factors, before)))
-        before = factors
-        body.set_loads()
+        body.set_loads(*factors)
         minima, are_all = body.all_minima(draw)
         if not are_all or body.pushes_into_foundation():
             continue
         values = sorted(body.condensed_functional(s) for s in minima)
         J, J_global = EXACT(row["J"]), EXACT(row["global_J"])
-        gain = values[0] - body.condensed_functional([ZERO] * len(body.contact_dofs))
+        gain = values[0] - body.condensed_functional(ZERO * body.g)
         error = BETTER * (abs(gain) + body.bonds_can_change()) + EXACT("1e-11") * (
             abs(J) + abs(body.constant))
         detail = f"factors {factors}, J {J}, global {J_global}, minima {list(map(float, values))}"
@@ -300,7 +279,7 @@ def check_success(scene, body, draw):
         return "comes off", ""
     require(summary["status"] == "success", "wrong success: exit code and status",
             summary["status"])
-    result = Result(body, summary)
+    result = Result(body, summary, scene.M)
     strained = max(abs(a + f) for a, f in zip(result.residual, body.f))
     if strained <= EXACT("1e-12") * result.largest:
         return "solved, nothing moves", result.word
@@ -309,7 +288,7 @@ def check_success(scene, body, draw):
     result.check_forces()
     found = result.check_minimum(draw)
     if "Load path/Factors" in scene.settings and not result.is_rough:
-        check_path(scene, body, draw)
+        check_path(body, draw)
         return found[0] + ", path", found[1]
     return found
 

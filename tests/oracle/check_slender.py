@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_slender.py DEBOND [LENGTH...]: slender bodies, and J of the benchmark, beside the
 minimum of the same discrete problem with the same bonds in 50 digits (oracle.py). Lengths
@@ -13,7 +13,8 @@ import tempfile
 
 from check_shapes import Result, WrongResult
 from oracle import EXACT, Body
-from random_scenes import Field, Strip
+from random_scenes import Field
+from random_scenes import strip as box
 
 
 def strip(aspect, cells, clamped="left", law="winkler", tangential="free", unit=1., stress=1.):
@@ -21,30 +22,31 @@ def strip(aspect, cells, clamped="left", law="winkler", tangential="free", unit=
     bonds, which break at 0.01 mm, the end would be lifted by 0.04 mm."""
     dim, q = len(cells), 8e3 / aspect**3 * stress
     side, q = ("right", q) if clamped == "left" else ("top", 16. * q / aspect)
-    zero = [Field(0.)]
-    return Strip((aspect * unit, unit, unit)[:dim], cells, 2e5 * stress,
-                 8e5 / aspect**4 * stress / unit, 0.01 * unit, clamped.split(", "),
-                 {"Loads/Traction " + side: (zero + [Field(q)] + zero)[:dim]}, law, tangential)
+    return box((aspect * unit, unit, unit)[:dim], cells, 2e5 * stress,
+               8e5 / aspect**4 * stress / unit, 0.01 * unit, clamped,
+               {"Loads/Traction " + side: "; ".join(["0", repr(q), "0"][:dim])}, law, tangential)
 
 
 def bar(cells, lengths=(0.4, 0.04), a=69., load=0.69, **others):
     """The benchmark under a load that is linear along the top."""
-    return Strip(lengths, cells, 69., a, 0.002, ["left", "right"], {"Loads/Traction top": [
-        Field(0.), Field(load, [-3.75 * load])]}, **others)
+    return box(lengths, cells, 69., a, 0.002, "left, right", {
+        "Loads/Traction top": f"0; {Field(load, [-3.75 * load])}"}, **others)
 
 
-def compare(debond, name, scene, *method):
+def compare(debond, name, settings, mesh, *method):
     """Returns the largest errors of J and displacement; raises what is wrong."""
     pathlib.Path("scene.prm").touch()
     result = subprocess.run(
-        [debond, "scene.prm"] + [f"--set={path}={value}" for path, value
-                                 in scene.settings.items()]
-        + ["--set=Solver/" + entry for entry in method],
+        [debond, "scene.prm", "--set=Output/Displacement=true", "--set=Output/Matrices=true",
+         "--set=Output/Directory=output",
+         *(f"--set={path}={value}" for path, value in settings.items()),
+         *("--set=Solver/" + entry for entry in method)],
         capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise WrongResult("no success", result.stderr)
-    body = Body(scene)
-    found = Result(body, json.loads(pathlib.Path("output/summary.json").read_text()))
+    body = Body(settings, mesh)
+    found = Result(body, json.loads(pathlib.Path("output/summary.json").read_text()),
+                   settings["Contact law/Bond threshold"])
     found.is_rough = False
     found.check_forces()
     own = body.minimise(body.branches_at(found.s))
@@ -68,7 +70,7 @@ def cases(aspects):
                 ((100, 1), (100, 4), (20, 1, 1)), ("left", "left, right"), ("free", "fixed"),
                 ("none", "winkler"), methods):
             yield (f"{aspect}, {cells}, {clamped}, {tangential}, {law}, {method}",
-                   strip(aspect, cells, clamped, law, tangential), *methods[method])
+                   *strip(aspect, cells, clamped, law, tangential), *methods[method])
     if aspects:
         return
     for name, scene in (
@@ -76,7 +78,7 @@ def cases(aspects):
             ("nu = 0.4999", bar((20, 2), nu=0.4999, hypothesis="plane strain")),
             ("slender", bar((80, 2), (0.4, 0.01))), ("very slender", bar((200, 1), (0.4, 0.002))),
             ("load 10", bar((20, 2), load=6.9)), ("a = 690", bar((20, 2), a=690.))):
-        yield (name, scene, "Method=majorise minimise")
+        yield (name, *scene, "Method=majorise minimise")
     for arguments, method in (
             ((100., (100, 1), "left", "none"), "automatic"),
             ((1e3, (150, 1)), "automatic"),
@@ -90,14 +92,14 @@ def cases(aspects):
             ((1e4, (60, 4), "left", "winkler", "free", 1e-3, 1e6), "multigrid"),
             ((1e4, (40, 1, 1)), "automatic"),
             ((1e4, (10, 2, 2), "left", "none", "fixed"), "automatic")):
-        yield (f"{arguments}, {method}", strip(*arguments), *methods[method])
+        yield (f"{arguments}, {method}", *strip(*arguments), *methods[method])
 
 
 def main(debond, *aspects):
     failures = 0
-    for name, scene, *method in cases(list(map(float, aspects))):
+    for name, *scene in cases(list(map(float, aspects))):
         try:
-            compare(debond, name, scene, *method)
+            compare(debond, name, *scene)
         except WrongResult as wrong:
             failures += 1
             print(f"FAILED {name}:", *wrong.args, flush=True)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random and other scenes beside which the program is tested: bodies cut in triangles or
-tetrahedra, with all that their scene files say of them, for oracle.py (random ones, and slender
-boxes of which all is given); entries of bodies with many patches for check_search.py; geometries
-for check_formats.py. Shares nothing with the program."""
+"""Random and other scenes beside which the program is tested, as entries and meshes of triangles
+or tetrahedra for oracle.py: bodies of many shapes, boxes and frustums around an axis; boxes cut
+as the program does it; entries of bodies with many patches for check_search.py; geometries for
+check_formats.py. Shares nothing with the program."""
 
 import collections
 import itertools
@@ -12,8 +12,11 @@ import random
 import sys
 from types import SimpleNamespace
 
+import numpy as np
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
+from oracle import EXACT, LAW, SUPPORTS, Body, determinant
 from run_scenes import sawteeth
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
@@ -49,11 +52,6 @@ class Field:
 
     def __init__(self, constant, slopes=()):
         self.constant, self.slopes = constant, slopes
-
-    def __call__(self, point):
-        number = type(point[0])
-        return sum((number(slope) * x for slope, x in zip(self.slopes, point)),
-                   number(self.constant))
 
     def __str__(self):
         return repr(self.constant) + "".join(
@@ -101,14 +99,6 @@ def corners(low, high):
             for way in ways]
 
 
-def determinant(rows):
-    """Of two or three."""
-    if len(rows) == 2:
-        return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
-    return sum(rows[0][k] * (rows[1][k - 2] * rows[2][k - 1]
-                             - rows[1][k - 1] * rows[2][k - 2]) for k in range(3))
-
-
 def volume(points):
     """Twice (six times) that of a triangle (a tetrahedron), with its sign."""
     return determinant([[x - y for x, y in zip(p, points[0])] for p in points[1:]])
@@ -118,7 +108,7 @@ class Mesh:
     """A grid of boxes, some left out, under a map, cut in simplices by the script or by
     the program. Corners of the grid have even numbers; those between are middles. The
     sides are those of the grid, and "cut" is what bounds the boxes left out: lists of
-    faces with the vertex that is opposite to them."""
+    faces."""
 
     def __init__(self, draw, dim):
         self.dim = dim
@@ -146,8 +136,7 @@ class Mesh:
                 self.file_cells = [c[half:] + c[:half] if dim == 3 else c[::-1]
                                    for c in self.file_cells]
             self.file_sides = self.boundary(
-                number, [(corners(*face), None) for box in boxes
-                         for face in faces_of_box(*box)])
+                number, [corners(*face) for box in boxes for face in faces_of_box(*box)])
         else:
             self.file_cells = self.simplices
             self.file_sides = self.sides
@@ -157,7 +146,6 @@ class Mesh:
         """Points, simplices and sides, from parts that are lists of corners of the grid; the
         corners in their order, and where they are. Returns the numbers of the corners."""
         self.points = [self.point(place, key) for key in keys]
-        self.along = [key[0] for key in keys]  # an order for elimination
         number = {key: n for n, key in enumerate(keys)}
 
         def positive(part):
@@ -167,8 +155,7 @@ class Mesh:
 
         self.simplices = [positive(part) for part in parts]
         self.sides = self.boundary(
-            number, [(part[:k] + part[k + 1:], part[k]) for part in parts
-                     for k in range(self.dim + 1)])
+            number, [part[:k] + part[k + 1:] for part in parts for k in range(self.dim + 1)])
         return number
 
     def draw_cells(self, draw):
@@ -210,16 +197,15 @@ class Mesh:
 
     def boundary(self, number, faces):
         """Those faces that there are once, by the names of their sides."""
-        counts = collections.Counter(frozenset(face) for face, _ in faces)
+        counts = collections.Counter(map(frozenset, faces))
         sides = collections.defaultdict(list)
-        for face, opposite in faces:
+        for face in faces:
             if counts[frozenset(face)] > 1:
                 continue
             names = [SIDES[k][end > 0] for k in range(self.dim)
                      for end in (0, 2 * self.cells[k])
                      if all(corner[k] == end for corner in face)]
-            sides[names[0] if names else "cut"].append(
-                (tuple(number[c] for c in face), number.get(opposite)))
+            sides[names[0] if names else "cut"].append(tuple(number[c] for c in face))
         return dict(sides)
 
     def point(self, place, key):
@@ -309,7 +295,7 @@ class Mesh:
 
     def vertices(self, sides):
         """Of these sides."""
-        return {v for side in sides for face, _ in self.sides[side] for v in face}
+        return {v for side in sides for face in self.sides[side] for v in face}
 
     def extent(self, axis):
         """The least and the largest coordinate."""
@@ -323,7 +309,7 @@ class Mesh:
         return msh.text(
             self.points[:n_points],
             [((group,), face[::-1] if self.reverses_faces else face)
-             for group, side in enumerate(sides, 1) for face, _ in self.file_sides[side]],
+             for group, side in enumerate(sides, 1) for face in self.file_sides[side]],
             [((99,), cell) for cell in self.file_cells],
             {(self.dim - 1, group): side for group, side in enumerate(sides, 1)})
 
@@ -404,7 +390,7 @@ class Scene:
     def is_flat(self, side):
         """Whether all its vertices are in the plane of its first face."""
         points = [self.mesh.points[v] for v in sorted(self.mesh.vertices([side]))]
-        first = [self.mesh.points[v] for v in self.mesh.sides[side][0][0]]
+        first = [self.mesh.points[v] for v in self.mesh.sides[side][0]]
         return all(abs(volume(first + [p])) <= 1e-12 * self.mesh.length ** self.dim
                    for p in points)
 
@@ -418,79 +404,72 @@ class Scene:
         self.a, self.M = a, M
         self.law = draw.choice(["winkler"] * 7 + ["curve"] * 2 + ["none"])
         self.set("Contact law/Law", self.law)
-        self.steps = [(1., 1.)] if self.law == "winkler" else []
         if self.law == "curve":
-            self.steps = [(1., draw.uniform(0.2, 0.8)), (draw.uniform(0.1, 0.8), 1.)]
-            self.steps = self.steps[draw.chance(0.3):]
+            steps = [(1., draw.uniform(0.2, 0.8)), (draw.uniform(0.1, 0.8), 1.)]
+            steps = steps[draw.chance(0.3):]
             self.set("Contact law/Curve", sawteeth(
-                *([(a, M)[k] * step[k] for step in self.steps] for k in (0, 1))))
+                *([(a, M)[k] * step[k] for step in steps] for k in (0, 1))))
         self.quadrature = "nodal" if draw.chance(0.6) else draw.choice(
             ["midpoint", "gauss 1", "gauss 2", "gauss 3"])
         self.set("Contact law/Quadrature", self.quadrature)
-
-        everywhere = SimpleNamespace(
-            stiffness=Field(a), threshold=Field(M), gap=Field(0.),
-            is_tangential_fixed=draw.chance(0.5 if self.clamped else 0.8))
-        self.bonds = {side: everywhere for side in self.contact}
-        self.set_bonds(draw, everywhere, "", 0.2)
-        if draw.chance(0.3):
-            for side in self.contact:
-                self.bonds[side] = SimpleNamespace(**vars(everywhere))
-                self.set_bonds(draw, self.bonds[side], " " + side, 0.5)
-        self.contact_faces = [(side, *face) for side in self.contact
-                              for face in self.mesh.sides[side]]
-        if self.bonds[self.contact[0]] is everywhere and draw.chance(0.3) and (
+        self.set_bonds(draw, "", 0.2, draw.chance(0.5 if self.clamped else 0.8))
+        self.has_own, self.piece = draw.chance(0.3), None
+        for side in self.contact if self.has_own else ():
+            self.set_bonds(draw, " " + side, 0.5)
+        if not self.has_own and draw.chance(0.3) and (
                 self.mesh.style != "bricks"):  # which the program cuts
-            self.add_part(draw, self.contact[0])
+            axis = draw.below(self.dim)
+            place = draw.uniform(*self.mesh.extent(axis))
+            self.set("Parts/piece", f"{self.contact[0]}: {'xyz'[axis]} > {place!r}")
+            self.piece = axis, place
+            self.set_bonds(draw, " piece", 0.7)
 
     def holds_contact(self):
         """Whether a clamped or moved side and a contact side have a vertex in common."""
-        held, touched = ({v for side in sides for face in self.mesh.sides[side]
-                          for v in face[0]}
-                         for sides in (self.clamped + self.moved, self.contact))
-        return bool(held & touched)
+        return bool(self.mesh.vertices(self.clamped + self.moved)
+                    & self.mesh.vertices(self.contact))
 
-    def add_part(self, draw, side):
-        """Bonds of a part of a side: of faces with their centre in it."""
-        axis = draw.below(self.dim)
-        place = draw.uniform(*self.mesh.extent(axis))
-        self.set("Parts/piece", f"{side}: {'xyz'[axis]} > {place!r}")
-        self.bonds["piece"] = SimpleNamespace(**vars(self.bonds[side]))
-        self.set_bonds(draw, self.bonds["piece"], " piece", 0.7)
-        for f, (name, face, opposite) in enumerate(self.contact_faces):
-            centre = sum(self.mesh.points[v][axis] for v in face) / len(face)
-            if name == side and centre > place:
-                self.contact_faces[f] = "piece", face, opposite
-
-    def set_bonds(self, draw, bonds, name, probability):
+    def set_bonds(self, draw, name, probability, is_fixed=None):
         """Gives some of what they have another value, and its entries."""
         a, M = self.a, self.M
         law = "Contact law/"
         if self.law == "winkler":
             changes = [draw.chance(probability), draw.chance(probability)]
+            stiffness, threshold = Field(a), Field(M)
             if changes[0]:
-                bonds.stiffness = self.field(draw, a * draw.uniform(0.1, 1.),
-                                             a * draw.magnitude(-1., 0.))
+                stiffness = self.field(draw, a * draw.uniform(0.1, 1.),
+                                       a * draw.magnitude(-1., 0.))
             if changes[1]:
-                bonds.threshold = self.field(draw, M * draw.uniform(0.2, 1.),
-                                             M * draw.uniform(0.2, 1.))
+                threshold = self.field(draw, M * draw.uniform(0.2, 1.),
+                                       M * draw.uniform(0.2, 1.))
             if changes[0] or not name:
-                self.set(f"{law}Bond stiffness{name}", str(bonds.stiffness))
+                self.set(f"{law}Bond stiffness{name}", str(stiffness))
             if changes[1] or not name:
-                self.set(f"{law}Bond threshold{name}", str(bonds.threshold))
+                self.set(f"{law}Bond threshold{name}", str(threshold))
         elif self.law == "curve" and not name and draw.chance(0.4):
-            bonds.stiffness = self.field(draw, a * draw.uniform(0.1, 1.), a)
-            self.set(f"{law}Traction factor", f"({bonds.stiffness})/{a!r}")
+            factor = self.field(draw, a * draw.uniform(0.1, 1.), a)
+            self.set(f"{law}Traction factor", f"({factor})/{a!r}")
         if draw.chance(0.2):
             # Negative where nothing holds the body in the foundation.
             sign = -1. if draw.chance(0.3) and not self.holds_contact() else 1.
-            bonds.gap = self.field(draw, sign * M * draw.uniform(0., 1.5),
-                                   sign * M * draw.uniform(0., 1.5))
-            self.set(f"{law}Initial gap{name}", str(bonds.gap))
-        if name and draw.chance(0.3):
-            bonds.is_tangential_fixed = draw.chance(0.5)
-        self.set(f"{law}Tangential displacement{name}",
-                 "fixed" if bonds.is_tangential_fixed else "free")
+            self.set(f"{law}Initial gap{name}", str(self.field(
+                draw, sign * M * draw.uniform(0., 1.5), sign * M * draw.uniform(0., 1.5))))
+        if is_fixed is None:
+            is_fixed = self.is_fixed("")
+            if draw.chance(0.3):
+                is_fixed = draw.chance(0.5)
+        self.set(f"{law}Tangential displacement{name}", "fixed" if is_fixed else "free")
+
+    def is_fixed(self, name):
+        """Whether the tangential displacement is."""
+        entry = "Contact law/Tangential displacement"
+        return self.settings.get(f"{entry} {name}", self.settings.get(entry)) == "fixed"
+
+    def part_of(self, side, face):
+        """The name by which bonds of a face go."""
+        axis, place = self.piece or (0, math.inf)
+        centre = sum(self.mesh.points[v][axis] for v in face) / len(face)
+        return "piece" if side == self.contact[0] and centre > place else side
 
     def add_method(self, draw):
         """How it is solved."""
@@ -547,13 +526,15 @@ class Scene:
             self.set("Material/Thermal expansion", self.expansion)
             self.loads["Loads/Temperature change"] = density(
                 1, 1. / (self.expansion * self.E))
+        self.scale_loads(1., 1.)
 
     def may_move(self, side, axis):
         """Whether the faces that hold u_tau at the edges of a side are across the axis,
         so that its displacement along that contradicts nothing."""
         corners, points = self.mesh.vertices([side]), self.mesh.points
-        for name, face, _ in self.contact_faces:
-            if self.bonds[name].is_tangential_fixed and corners & set(face):
+        for name, face in ((self.part_of(side, face), face) for side in self.contact
+                           for face in self.mesh.sides[side]):
+            if self.is_fixed(name) and corners & set(face):
                 along = [points[v][axis] for v in face]
                 if max(along) - min(along) > 1e-12 * self.mesh.length:
                     return False
@@ -568,35 +549,59 @@ class Scene:
                                      for c in self.loads[path]))
 
 
-class Strip(Scene):
-    """A scene of which all is given."""
+def choose_loads(draw, scene, body):
+    """Loads that stretch intact bonds to about where they break, so that all,
+    some or none of them do; and some of any size. Returns whether there are
+    such loads."""
 
-    def __init__(self, lengths, cells, E, a, M, clamped, loads, law="winkler",
-                 tangential="free", nu=0.33, hypothesis="plane stress"):
-        self.mesh, self.dim = Box(lengths, cells), len(cells)
-        self.E, self.nu, self.a, self.M = E, nu, a, M
-        self.is_plane_stress = self.dim == 2 and hypothesis == "plane stress"
-        self.clamped, self.rollers, self.moved, self.loads = clamped, [], [], loads
-        self.contact, self.quadrature, self.steps = ["bottom"], "nodal", [(1., 1.)]
-        if law == "none":
-            self.steps = []
-        self.expansion = 0.
-        self.bonds = {"bottom": SimpleNamespace(
-            stiffness=Field(a), threshold=Field(M), gap=Field(0.),
-            is_tangential_fixed=tangential == "fixed")}
-        self.contact_faces = [("bottom", *face) for face in self.mesh.sides["bottom"]]
-        self.settings = {}
-        for path, value in {
-                "Dimension": self.dim, "Mesh/Lengths": ", ".join(map(repr, lengths)),
-                "Mesh/Cells": ", ".join(map(str, cells)), "Material/Young modulus": E,
-                "Material/Poisson ratio": nu, "Material/Hypothesis": hypothesis,
-                "Boundary conditions/Clamped boundaries": ", ".join(clamped),
-                "Contact law/Law": law, "Contact law/Tangential displacement": tangential,
-                "Contact law/Bond stiffness": a, "Contact law/Bond threshold": M,
-                "Output/Displacement": "true", "Output/Matrices": "true",
-                "Output/Directory": "output", **{path: "; ".join(map(str, load))
-                                                 for path, load in loads.items()}}.items():
-            self.set(path, str(value))
+    def largest_opening():
+        # Without the gap, which loads do not scale.
+        body.set_loads(gap=0)
+        s = body.minimise([0] * len(body.bonds))
+        opening = 0. if body.is_off(s) else float(max(map(abs, s)))
+        return opening if opening > 1e-20 * scene.mesh.length / scene.E else 0.
+
+    opening = largest_opening()
+    if not opening and draw.chance(0.8):
+        # They press, and pull in the other direction.
+        scene.scale_loads(-1., 1.)
+        opening = largest_opening()
+    if draw.chance(0.8) and opening > 0.:
+        # Movements, which are of size one as well, were applied together.
+        factor = scene.M / opening * draw.magnitude(-0.3, 0.9)
+        scene.scale_loads(factor, factor)
+    else:
+        scene.scale_loads(scene.a * scene.M * draw.magnitude(-2., 2.),
+                          scene.M * draw.magnitude(-1., 1.))
+    body.set_loads()
+    if body.pushes_into_foundation():
+        scene.scale_loads(1., -1.)
+        body.set_loads()
+    return not body.pushes_into_foundation()
+
+
+def make_scene(draw, dim):
+    """The first usable scene that is drawn."""
+    while True:
+        scene = Scene(draw, dim)
+        if not scene.mesh.is_usable():
+            continue
+        body = Body(scene.settings, scene.mesh)
+        if body.is_usable and choose_loads(draw, scene, body):
+            return scene, body
+
+
+def strip(lengths, cells, E, a, M, clamped, loads, law="winkler", tangential="free", nu=0.33,
+          hypothesis="plane stress"):
+    """Entries and mesh of a box of which all is given."""
+    return {"Dimension": str(len(cells)), "Mesh/Lengths": ", ".join(map(repr, lengths)),
+            "Mesh/Cells": ", ".join(map(str, cells)), "Material/Young modulus": str(E),
+            "Material/Poisson ratio": str(nu), "Material/Hypothesis": hypothesis,
+            "Boundary conditions/Clamped boundaries": clamped,
+            "Boundary conditions/Contact boundary": "bottom", "Contact law/Law": law,
+            "Contact law/Tangential displacement": tangential,
+            "Contact law/Bond stiffness": str(a), "Contact law/Bond threshold": str(M),
+            **loads}, Box(lengths, cells)
 
 
 # ---------------------------------------- entries of scenes without an oracle
