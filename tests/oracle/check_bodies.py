@@ -17,12 +17,12 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
-from run_scenes import Scenes, read_table
+from run_scenes import Scenes, full_entry, read_table
 
 scenes = Scenes(sys.argv[1])
 solve, check, close = scenes.solve, scenes.check, scenes.close
 shutil.copy(sys.argv[2], scenes.directory / "scene.prm")
-MM = "Solver/Method=majorise minimise"
+MM = "Method=majorise minimise"
 
 
 def bar(nx, ny, scale=1., crossed=False):
@@ -48,7 +48,7 @@ def write_mesh(name, *arguments, cut=None, **options):
 
 
 def file(name):
-    return ["Mesh/Source=file", f"Mesh/File={name}.msh"]
+    return ["Source=file", f"File={name}.msh"]
 
 
 def check_plane():
@@ -61,31 +61,28 @@ def check_plane():
         for name in ("quadrilaterals", "triangles"):
             odd_name = f"odd-{name}-{version}"
             write_mesh(odd_name, *meshes[name], version=version, is_odd=True)
-            odd += [(odd_name, *file(odd_name), "Material/Young modulus=1",
-                     "Material/Young modulus all=69"),
-                    (odd_name + ", a part of it", *file(odd_name),
-                     "Material/Young modulus upper=69")]
-    generator = ["Mesh/Source=generator", "Mesh/Generator=subdivided_hyper_rectangle",
-                 "Boundary conditions/Clamped boundaries=0, 1",
-                 "Boundary conditions/Contact boundary=2", "Loads/Traction top=",
-                 "Loads/Traction 3=0; if(x < 0.2, 0.69, -0.345)"]
+            odd += [(odd_name, *file(odd_name), "Young modulus=1", "Young modulus all=69"),
+                    (odd_name + ", a part of it", *file(odd_name), "Young modulus upper=69")]
+    generator = ["Source=generator", "Generator=subdivided_hyper_rectangle",
+                 "Clamped boundaries=0, 1", "Contact boundary=2", "Traction top=",
+                 "Traction 3=0; if(x < 0.2, 0.69, -0.345)"]
     check_same([
         ("box",), ("quadrilaterals", *file("quadrilaterals")), ("triangles", *file("triangles")),
-        ("refined", *file("coarse"), "Mesh/Refinements=1"),
-        ("scaled", *file("mm"), "Mesh/Scale=0.001"), *odd,
-        ("generator", *generator, "Mesh/Arguments=40, 4 : 0, 0 : 0.4, 0.04 : true"),
-        ("generator, refined", *generator, "Mesh/Arguments=10, 1 : 0, 0 : 0.4, 0.04 : true",
-         "Mesh/Refinements=2"),
+        ("refined", *file("coarse"), "Refinements=1"),
+        ("scaled", *file("mm"), "Scale=0.001"), *odd,
+        ("generator", *generator, "Arguments=40, 4 : 0, 0 : 0.4, 0.04 : true"),
+        ("generator, refined", *generator, "Arguments=10, 1 : 0, 0 : 0.4, 0.04 : true",
+         "Refinements=2"),
         # Pieces with names of their own that make no difference.
         ("a part that is the side", "Parts/glued=bottom: x > -1",
-         "Boundary conditions/Contact boundary=glued"),
+         "Contact boundary=glued"),
         ("tractions of parts that overlap", "Parts/left half=top: x < 0.2",
-         "Loads/Traction top=0; -0.345", "Loads/Traction left half=0; 1.035"),
+         "Traction top=0; -0.345", "Traction left half=0; 1.035"),
         ("a region of the same material", "Parts/upper=y > 0.02",
-         "Material/Young modulus upper=69"),
+         "Young modulus upper=69"),
         ("regions that are all", "Parts/upper=y > 0.02", "Parts/lower=y <= 0.02",
-         "Material/Young modulus=1", "Material/Young modulus upper=69",
-         "Material/Young modulus lower=69"),
+         "Young modulus=1", "Young modulus upper=69",
+         "Young modulus lower=69"),
         ("a part of a clamped side", "Parts/upper end=left: y > 0.02")],
         ["a part of a clamped side"])
 
@@ -95,18 +92,17 @@ def check_solid():
     for version in ("2.2", "4.1"):
         name = "odd-solid-" + version
         write_mesh(name, *msh.box((6, 2, 1), (0.4, 0.04, 0.05)), version=version, is_odd=True)
-        odd.append((name, *file(name), "Material/Young modulus upper=69"))
-    solid = ["Dimension=3", "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0.1"]
+        odd.append((name, *file(name), "Young modulus upper=69"))
+    solid = ["Dimension=3", "Traction top=0; if(x < 0.2, 0.69, -0.345); 0.1"]
     check_same([(name, *solid, *entries) for name, *entries in [
-        ("box", "Mesh/Lengths=0.4, 0.04, 0.05", "Mesh/Cells=6, 2, 1"), *odd]])
+        ("box", "Lengths=0.4, 0.04, 0.05", "Cells=6, 2, 1"), *odd]])
 
 
 def check_temperature():
     """Half of a change, as such and by a load path."""
-    stresses = [solve(MM, "Loads/Traction top=", "Material/Thermal expansion=1e-5", *entries)[
-        "largest_von_mises"] for entries in (
-            ["Loads/Temperature change=30"],
-            ["Loads/Temperature change=60", "Load path/Factors=0.5"])]
+    stresses = [solve(MM, "Traction top=", "Thermal expansion=1e-5", *entries)["largest_von_mises"]
+                for entries in (["Temperature change=30"], ["Temperature change=60",
+                                                            "Factors=0.5"])]
     close("stresses of half a change", *stresses, 1e-9)
 
 
@@ -115,15 +111,13 @@ def check_layers():
     heights, width, pull = (0.07, 0.05, 0.08), 0.1, 3e-4
     for moduli in ((2., 5e8, 3.), (4e8, 2., 7e7), (3e10, 1., 2.), (1., 9e10, 4.)):
         softness = sum(h / E for h, E in zip(heights, moduli))
-        result = solve(
-            MM, f"Mesh/Lengths={width}, 0.2", "Mesh/Cells=5, 20",
-            "Parts/middle=y > 0.07 && y < 0.12", "Parts/upper=y > 0.12",
-            f"Material/Young modulus={moduli[0]}", f"Material/Young modulus middle={moduli[1]}",
-            f"Material/Young modulus upper={moduli[2]}", "Material/Poisson ratio=0",
-            "Loads/Traction top=", f"Loads/Traction bottom=0; {pull}",
-            "Boundary conditions/Clamped boundaries=top",
-            "Boundary conditions/Roller boundaries=left, right",
-            f"Contact law/Bond stiffness={0.7 / softness!r}", "Contact law/Bond threshold=1")
+        result = solve(MM, f"Lengths={width}, 0.2", "Cells=5, 20",
+                       "Parts/middle=y > 0.07 && y < 0.12", "Parts/upper=y > 0.12",
+                       f"Young modulus={moduli[0]}", f"Young modulus middle={moduli[1]}",
+                       f"Young modulus upper={moduli[2]}", "Poisson ratio=0", "Traction top=",
+                       f"Traction bottom=0; {pull}", "Clamped boundaries=top",
+                       "Roller boundaries=left, right", f"Bond stiffness={0.7 / softness!r}",
+                       "Bond threshold=1")
         close(f"layers of {moduli}", result["functional"],
               -pull**2 * width * softness / (2. * (1. + 0.7)), 1e-12)
 
@@ -133,23 +127,22 @@ def check_refused():
     write_mesh("cut", *bar(40, 4), cut=-500)
     for message, *entries in (
             ("none.msh cannot be read", *file("none")),
-            ("Gmsh does not read this", "Mesh/Source=file", "Mesh/File=scene.prm"),
+            ("Gmsh does not read this", "Source=file", "File=scene.prm"),
             ("cut.msh: Gmsh does not read this", *file("cut")),
             ("A mesh of triangles or tetrahedra is not refined", *file("triangles"),
-             "Mesh/Refinements=1"),
+             "Refinements=1"),
             ("the body has no boundary glued, but bottom, left, right, top", *file("mm"),
-             "Boundary conditions/Contact boundary=glued"),
+             "Contact boundary=glued"),
             ("the mesh has no tetrahedra or hexahedra", *file("mm"), "Dimension=3")):
         result = solve(*entries)
-        check(message, result["exit_code"] == 2 and message in result["errors"],
-              result["errors"])
+        check(message, result["exit_code"] == 2 and message in result["errors"], result["errors"])
 
 
 def written(name, *settings):
     """The files of a run, with numbers of the summary that are not those of the machine."""
     folder = scenes.directory / "written"
     shutil.rmtree(folder, ignore_errors=True)
-    scenes.run("scene.prm", *("--set=" + entry for entry in (
+    scenes.run("scene.prm", *("--set=" + full_entry(entry) for entry in (
         "Output/Directory=written", "Output/Displacement=true", *settings)))
     files = {file.name: file.read_bytes() for file in folder.iterdir()}
     summary = json.loads(files.pop("summary.json"))
@@ -161,9 +154,9 @@ def written(name, *settings):
 def check_again(method, tolerance, distance):
     """The paper's method ends at a distance that its stop tolerance allows, the others are
     exact. Displacements are compared relative to M."""
-    solver = "Solver/Method=" + method
+    solver = "Method=" + method
     first, again, mirrored = (written(method, solver, *more) for more in (
-        [], [], ["Loads/Traction top=0; if(x > 0.2, 0.69, -0.345)"]))
+        [], [], ["Traction top=0; if(x > 0.2, 0.69, -0.345)"]))
     check(method + ", the same files", first == again)
     close(method + ", mirrored", mirrored[0]["functional"], first[0]["functional"], tolerance)
     for row, other in zip(first[2], mirrored[2][::-1], strict=True):
@@ -175,7 +168,7 @@ def check_again(method, tolerance, distance):
         os.environ.update(dict.fromkeys(
             ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "DEAL_II_NUM_THREADS"), threads))
         # Large enough that the threads have something to do.
-        J.append(solve(solver, "Mesh/Cells=160, 16")["functional"])
+        J.append(solve(solver, "Cells=160, 16")["functional"])
         close(f"{method}, {threads} threads", J[-1], J[0], 1e-12)
 
 
@@ -189,7 +182,7 @@ scenes.together(*((test.__name__, test) for test in (
 # What was written can be run again from another folder.
 (scenes.directory / "elsewhere").mkdir()
 output = scenes.directory / "output"
-scenes.run("scene.prm", f"--set=Output/Directory={output}", "--set=" + MM)
+scenes.run("scene.prm", f"--set=Output/Directory={output}", "--set=" + full_entry(MM))
 shutil.copy(output / "parameters.prm", scenes.directory / "elsewhere")
 again = scenes.run("elsewhere/parameters.prm")
 check("the effective scene", again.returncode == 0, again.stderr)

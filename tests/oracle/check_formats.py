@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_formats.py DEBOND: unstructured meshes of a square and a cube, as Gmsh
 makes them of random sizes at the corners, in many formats: J is the same to

@@ -11,24 +11,21 @@ from run_scenes import Scenes
 
 scenes = Scenes(sys.argv[1])
 solve, check, close = scenes.solve, scenes.check, scenes.close
-METHOD = ["Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)", "Solver/Search=none",
-          "Solver/Method=majorise minimise", "Verification/Tolerance=1e-5"]
-SOLID = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04",
-         "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
-MULTIGRID = "Solver/Linear solver=multigrid"
+METHOD = ["Traction top=0; if(x < 0.2, 0.69, -0.345)", "Search=none",
+          "Method=majorise minimise", "Verification/Tolerance=1e-5"]
+SOLID = ["Dimension=3", "Lengths=0.4, 0.04, 0.04", "Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
+MULTIGRID = "Linear solver=multigrid"
 
 
 def check_scene(linear, contact, cells, *settings):
     """Cycles for A u = f, for which the foundation is out of reach, if a number is given."""
-    scene = [*METHOD, *settings, "Mesh/Cells=" + cells]
-    result, direct = solve(*scene, MULTIGRID), solve(*scene, "Solver/Linear solver=direct")
+    scene = [*METHOD, *settings, "Cells=" + cells]
+    result, direct = solve(*scene, MULTIGRID), solve(*scene, "Linear solver=direct")
     check("success", result["status"] == direct["status"] == "success")
-    check("cycles for contact", result["linear_iterations"] <= contact,
-          result["linear_iterations"])
+    check("cycles for contact", result["linear_iterations"] <= contact, result["linear_iterations"])
     if linear:
-        cycles = solve(*scene, MULTIGRID, "Contact law/Law=none", "Contact law/Initial gap=1e3",
-                       "Contact law/Quadrature=nodal", "Verification/Tolerance=1")[
-                           "linear_iterations"]
+        cycles = solve(*scene, MULTIGRID, "Law=none", "Initial gap=1e3", "Quadrature=nodal",
+                       "Verification/Tolerance=1")["linear_iterations"]
         check("cycles for A u = f", cycles <= linear, cycles)
     check("law", result["law_violation"] <= 1e-6, result["law_violation"])
     close("J of the direct path", result["functional"], direct["functional"], 1e-11)
@@ -39,15 +36,14 @@ def check_contrasts():
     """A layer, a million times as soft, whose edge is inside coarse cells, and stiff inclusions
     in what is nearly incompressible: multigrid does not converge, and the factorisation that
     takes its place gives J, also on a path."""
-    plate = [METHOD[0], "Mesh/Cells=160, 16", "Material/Young modulus=69",
-             "Boundary conditions/Clamped boundaries=left, right"]
-    layer = ["Parts/upper=y > 0.0174", "Material/Young modulus upper=6.9e-5"]
-    inclusions = ["Parts/grains=sin(x * 628.3) * sin(y * 628.3) > 0.3", "Load path/Factors=1, 2",
-                  "Material/Young modulus grains=69e6", "Material/Hypothesis=plane strain",
-                  "Material/Poisson ratio=0.4999", "Load path/Bonds heal=false"]
+    plate = [METHOD[0], "Cells=160, 16", "Young modulus=69", "Clamped boundaries=left, right"]
+    layer = ["Parts/upper=y > 0.0174", "Young modulus upper=6.9e-5"]
+    inclusions = ["Parts/grains=sin(x * 628.3) * sin(y * 628.3) > 0.3", "Factors=1, 2",
+                  "Young modulus grains=69e6", "Hypothesis=plane strain",
+                  "Poisson ratio=0.4999", "Bonds heal=false"]
     for entries in layer, inclusions:
         result = solve(*plate, *entries, MULTIGRID)
-        direct = solve(*plate, *entries, "Solver/Linear solver=direct")
+        direct = solve(*plate, *entries, "Linear solver=direct")
         check("success", result["status"] == direct["status"] == "success", result["errors"])
         check("a note", any("did not converge" in note for note in result["notes"]))
         close("J of the factorisation", result["functional"], direct["functional"], 1e-11)
@@ -55,18 +51,17 @@ def check_contrasts():
 
 
 def check_units():
-    cycles = [solve(*METHOD, MULTIGRID, "Mesh/Cells=80, 8", *units)["linear_iterations"]
-              for units in (
-                  [], ["Material/Young modulus=69e9", "Contact law/Bond stiffness=69e9",
-                       "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"],
-                  ["Mesh/Lengths=400, 40", "Material/Young modulus=69e3",
-                   "Loads/Traction top=0; if(x < 200, 690, -345)",
-                   "Contact law/Bond stiffness=69", "Contact law/Bond threshold=2"])]
+    cycles = [solve(*METHOD, MULTIGRID, "Cells=80, 8", *units)["linear_iterations"]
+              for units in ([], ["Young modulus=69e9", "Bond stiffness=69e9",
+                                 "Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"],
+                            ["Lengths=400, 40", "Young modulus=69e3",
+                             "Traction top=0; if(x < 200, 690, -345)", "Bond stiffness=69",
+                             "Bond threshold=2"])]
     check("as many cycles", len(set(cycles)) == 1, cycles)
 
 
 def bonds(a, M):
-    return [f"Contact law/Bond stiffness={a}", f"Contact law/Bond threshold={M}"]
+    return [f"Bond stiffness={a}", f"Bond threshold={M}"]
 
 
 scenes.together(("units", check_units), ("contrasts", check_contrasts), *((name, check_scene, *case) for name, *case in (
@@ -83,19 +78,19 @@ scenes.together(("units", check_units), ("contrasts", check_contrasts), *((name,
     ("2D, cells 4:1", 17, 19, "40, 16"),
     ("2D, cells 10:1", 17, 19, "40, 40"),
     ("3D, cells 4:1", 17, 19, "20, 8, 8", *SOLID),
-    ("pad clamped on top", 16, 18, "80, 8", "Loads/Traction top=0; 0",
-     "Boundary conditions/Clamped boundaries=top", "Loads/Body force=0; if(x < 0.2, 30, -15)"),
+    ("pad clamped on top", 16, 18, "80, 8", "Traction top=0; 0",
+     "Clamped boundaries=top", "Body force=0; if(x < 0.2, 30, -15)"),
     ("clamped left, tangentially free", 20, 24, "80, 8",
-     "Contact law/Tangential displacement=free", "Boundary conditions/Clamped boundaries=left"),
-    ("turned, bottom and top in contact", 16, 18, "80, 8", "Mesh/Rotation=30",
-     "Boundary conditions/Contact boundary=bottom, top", "Loads/Traction top=0; 0",
-     "Loads/Body force=3; 10"),
+     "Tangential displacement=free", "Clamped boundaries=left"),
+    ("turned, bottom and top in contact", 16, 18, "80, 8", "Rotation=30",
+     "Contact boundary=bottom, top", "Traction top=0; 0",
+     "Body force=3; 10"),
     ("plate clamped at two sides", 18, 20, "24, 3, 24", *SOLID,
-     "Loads/Traction top=0; if(x < 0.2, 0.1, -0.05); 0", "Mesh/Lengths=0.4, 0.04, 0.4",
-     "Boundary conditions/Clamped boundaries=left, back"),
-    ("gauss 2", 0, 18, "80, 8", "Contact law/Quadrature=gauss 2"),
-    ("off the foundation, pressed", 0, 22, "80, 8", "Contact law/Initial gap=0.001"),
-    *((f"plane strain, nu = {nu}", linear, contact, "80, 8", "Material/Hypothesis=plane strain",
-       f"Material/Poisson ratio={nu}") for nu, linear, contact in (
+     "Traction top=0; if(x < 0.2, 0.1, -0.05); 0", "Lengths=0.4, 0.04, 0.4",
+     "Clamped boundaries=left, back"),
+    ("gauss 2", 0, 18, "80, 8", "Quadrature=gauss 2"),
+    ("off the foundation, pressed", 0, 22, "80, 8", "Initial gap=0.001"),
+    *((f"plane strain, nu = {nu}", linear, contact, "80, 8", "Hypothesis=plane strain",
+       f"Poisson ratio={nu}") for nu, linear, contact in (
         (0.45, 40, 50), (0.49, 90, 110))))))
 scenes.end()

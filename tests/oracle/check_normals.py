@@ -22,11 +22,9 @@ check, close = scenes.check, scenes.close
 GROUPS = {1: "contact", 2: "base", 3: "cut"}
 
 
-HELD = ["Mesh/Source=file", "Material/Young modulus=70", "Material/Poisson ratio=0.25",
-        "Boundary conditions/Clamped boundaries=",
-        "Boundary conditions/Contact boundary=contact",
-        "Contact law/Bond stiffness=9", "Contact law/Bond threshold=0.02"]
-SOLID = HELD + ["Dimension=3", "Boundary conditions/Clamped boundaries=base"]
+HELD = ["Source=file", "Young modulus=70", "Poisson ratio=0.25", "Clamped boundaries=",
+        "Contact boundary=contact", "Bond stiffness=9", "Bond threshold=0.02"]
+SOLID = HELD + ["Dimension=3", "Clamped boundaries=base"]
 PLANE = 70. / (1. - 0.25**2)
 
 
@@ -38,7 +36,7 @@ def solve(mesh, *settings, order=None):
                     [((9,), cell) for cell in cells], names, order=order)
     name = f"mesh-{hash(text)}.msh"
     (scenes.directory / name).write_text(text)
-    return scenes.solve("Mesh/File=" + name, *settings)
+    return scenes.solve("File=" + name, *settings)
 
 
 def same(values):
@@ -61,8 +59,7 @@ def disc(sides, rings=1):
             cells.append((at(r, k), at(r + 1, k), at(r + 1, k + 1)))
             if r > 0:
                 cells.append((at(r, k), at(r + 1, k + 1), at(r, k + 1)))
-    return points, [(1, (at(rings, k), at(rings, k + 1)))
-                    for k in range(sides)], cells
+    return points, [(1, (at(rings, k), at(rings, k + 1))) for k in range(sides)], cells
 
 
 def dome(draw, rough):
@@ -122,7 +119,7 @@ def check_polygon(sides):
         angle = math.radians(degrees)
         force = turned([(0.3, -1.1)], angle)[0]
         found.append(solve((turned(points, angle), faces, cells), *HELD,
-                           "Loads/Body force=%r; %r" % force))
+                           "Body force=%r; %r" % force))
     same([result["functional"] for result in found])
     for result in found:
         notes = " ".join(result["notes"])
@@ -138,7 +135,7 @@ def check_disc():
     c = k * (1. - nu ** 2) / (8. * 70.)
     A = -c * (PLANE * (3. + nu) + a) / (PLANE * (1. + nu) + a)
     exact = math.pi * k * (A / 4. + c / 6.)
-    errors = [solve(disc(sides, sides // 6), *HELD, f"Loads/Body force=-{k} * x; -{k} * y")[
+    errors = [solve(disc(sides, sides // 6), *HELD, f"Body force=-{k} * x; -{k} * y")[
         "functional"] / exact - 1. for sides in (12, 24, 48)]
     check("J of polygons", abs(errors[-1]) < 0.02
           and all(3.3 < e / f < 4.7 for e, f in zip(errors, errors[1:])), errors)
@@ -156,16 +153,14 @@ def check_drawn_in():
         mesh = ([(0., 0.), *arc],
                 [(1, (k, k + 1)) for k in range(1, n + 1)] + [(2, (0, 1)), (3, (n + 1, 0))],
                 [(0, k, k + 1) for k in range(1, n + 1)])
-        found = solve(mesh, *HELD, "Contact law/Law=none", f"Loads/Pressure contact={-sigma}",
-                      "Contact law/Tangential displacement=fixed",
-                      *(f"Boundary conditions/Displacement {side}={c} * x; {c} * y"
-                        for side in ("base", "cut")))
+        found = solve(mesh, *HELD, "Law=none", f"Pressure contact={-sigma}",
+                      "Tangential displacement=fixed", *(f"Displacement {side}={c} * x; {c} * y"
+                                                         for side in ("base", "cut")))
         if n == 1:
             check("one facet", found["exit_code"] == 2
                   and "prescribed otherwise by Tangential" in found["errors"], found["errors"])
         else:
-            close("J", found["functional"], -sigma * c * n / 2. * math.sin(math.pi / 2. / n),
-                  1e-12)
+            close("J", found["functional"], -sigma * c * n / 2. * math.sin(math.pi / 2. / n), 1e-12)
 
 
 def check_dome(rough, *extra):
@@ -176,7 +171,7 @@ def check_dome(rough, *extra):
         angle = order * 0.77
         force = turned([(0.5, -0.2)], angle)[0]
         values.append(solve((turned(points, angle), faces, cells), *SOLID, *extra,
-                            "Loads/Body force=%r; %r; 0.4" % force,
+                            "Body force=%r; %r; 0.4" % force,
                             order=random.Random(order))["functional"])
     same(values)
 
@@ -184,23 +179,21 @@ def check_dome(rough, *extra):
 def check_tips():
     """The tip of a cone is smooth, but for that of a needle; so is a corner of faces that
     differ by 30.9 degrees."""
-    load = "Loads/Body force=0; 0; -1"
+    load = "Body force=0; 0; -1"
     for slope, nodes in ((25., 1), (80., 1), (87., 0)):
         check(f"cone of {slope} degrees", solve(
             cone(math.radians(slope)), *SOLID, load)["contact_nodes"] == nodes)
-    needle = solve(cone(math.radians(87.)), *SOLID, load,
-                   "Contact law/Tangential displacement=free")
+    needle = solve(cone(math.radians(87.)), *SOLID, load, "Tangential displacement=free")
     check("needle", needle["exit_code"] == 2
           and "14 different normals meet at (0, 0, " in needle["errors"], needle["errors"])
     height = math.tan(math.radians(15.45))
     flat = ([(-1., 0.), (0., -height), (1., 0.), (0., 1.)],
             [(1, (0, 1)), (1, (1, 2)), (2, (2, 3)), (2, (3, 0))], [(0, 1, 3), (1, 2, 3)])
-    check("a flat corner", solve(flat, *HELD, "Boundary conditions/Clamped boundaries=base",
-                                 "Loads/Body force=0; 1")["contact_nodes"] == 1)
+    check("a flat corner", solve(flat, *HELD, "Clamped boundaries=base",
+                                 "Body force=0; 1")["contact_nodes"] == 1)
 
 
-TRIANGLE = ([(0., 0.), (1.5, 0.), (0., 2.)], [(1, (0, 1)), (2, (1, 2)), (3, (2, 0))],
-            [(0, 1, 2)])
+TRIANGLE = ([(0., 0.), (1.5, 0.), (0., 2.)], [(1, (0, 1)), (2, (1, 2)), (3, (2, 0))], [(0, 1, 2)])
 TETRAHEDRON = ([(0., 0., 0.), (1.5, 0., 0.), (0., 2., 0.), (0., 0., 0.5)],
                [(1, (0, 2, 1)), (2, (1, 2, 3)), (3, (0, 1, 3)), (3, (0, 3, 2))],
                [(0, 1, 2, 3)])
@@ -213,31 +206,31 @@ def check_no_free_vertex(dim, *kind):
         0.5 * 70. * (1. - nu) / ((1. + nu) * (1. - 2. * nu)) * e ** 2 - 2. * e * 0.375)
     moved = f"={e} * x" + "; 0" * (dim - 1)
     for name, expected, *supports in (
-            ("at rest", 0., "Boundary conditions/Clamped boundaries=base, cut"),
-            ("stretched", energy, "Boundary conditions/Displacement base" + moved,
-             "Boundary conditions/Displacement cut" + moved,
-             "Contact law/Tangential displacement=free")):
+            ("at rest", 0., "Clamped boundaries=base, cut"),
+            ("stretched", energy, "Displacement base" + moved,
+             "Displacement cut" + moved,
+             "Tangential displacement=free")):
         found = solve(TRIANGLE if dim == 2 else TETRAHEDRON, *HELD, *kind, f"Dimension={dim}",
-                      "Loads/Body force=2; -1" + "; 0.5" * (dim == 3), *supports)
+                      "Body force=2; -1" + "; 0.5" * (dim == 3), *supports)
         close(name, found["functional"], expected, 1e-12)
         for text in ("nothing to solve", "no contact node"):
             check(f"{name}, note '{text}'", any(text in note for note in found["notes"]),
                   found["notes"])
 
 
-QUADRATIC = ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]
-MM = "Solver/Method=majorise minimise"
+QUADRATIC = ["Degree=2", "Quadrature=gauss 3"]
+MM = "Method=majorise minimise"
 scenes.together(
     *((f"{sides} sides", check_polygon, sides) for sides in (10, 11, 12, 13)),
     ("disc", check_disc), ("drawn in", check_drawn_in), ("tips", check_tips),
     *((f"dome {rough} {extra}", check_dome, rough, *extra) for rough in (0., 0.02, 0.06)
-      for extra in (["Contact law/Tangential displacement=fixed"],
-                    ["Contact law/Tangential displacement=fixed", *QUADRATIC])),
+      for extra in (["Tangential displacement=fixed"],
+                    ["Tangential displacement=fixed", *QUADRATIC])),
     *((f"{dim}D, {kind}", check_no_free_vertex, dim, *kind) for dim in (2, 3) for kind in (
-        ["Solver/Method=automatic"], ["Solver/Method=euclidean bundle"],
-        ["Solver/Method=energy bundle"], [MM, "Solver/Linear solver=direct"],
-        [MM, "Solver/Linear solver=multigrid"], [MM, "Solver/Prove=true"],
-        [MM, "Solver/Search=full"], [MM, "Load path/Factors=0.5, 1"],
-        [MM, "Contact law/Law=none"],
-        [MM, "Contact law/Quadrature=gauss 8"] if dim == 2 else QUADRATIC)))
+        ["Method=automatic"], ["Method=euclidean bundle"],
+        ["Method=energy bundle"], [MM, "Linear solver=direct"],
+        [MM, "Linear solver=multigrid"], [MM, "Prove=true"],
+        [MM, "Search=full"], [MM, "Factors=0.5, 1"],
+        [MM, "Law=none"],
+        [MM, "Quadrature=gauss 8"] if dim == 2 else QUADRATIC)))
 scenes.end()

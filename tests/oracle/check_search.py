@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_search.py DEBOND [COUNT [FIRST]]: what the default search misses on random scenes
 with many patches (bars, strips clamped at one end, pads clamped on the far side, plates),
@@ -29,16 +29,15 @@ def check_word(name, result, least):
 def check_pad():
     """Pulled off in five waves: bonds hold all of it, or let some go. Bonds at Gauss points have
     no proof."""
-    pad = ["Mesh/Lengths=1.7, 0.11", "Material/Young modulus=1", "Material/Poisson ratio=0.1",
-           "Boundary conditions/Clamped boundaries=top", "Solver/Method=automatic",
-           "Loads/Traction bottom=0; 0.95*sin(16.8*x + 5.65) + 0.35", "Mesh/Cells=60, 1",
-           "Contact law/Bond stiffness=1400", "Contact law/Bond threshold=0.007"]
-    few = [["Solver/Method=majorise minimise", "Solver/Prove=true",
+    pad = ["Lengths=1.7, 0.11", "Young modulus=1", "Poisson ratio=0.1", "Clamped boundaries=top",
+           "Method=automatic", "Traction bottom=0; 0.95*sin(16.8*x + 5.65) + 0.35", "Cells=60, 1",
+           "Bond stiffness=1400", "Bond threshold=0.007"]
+    few = [["Method=majorise minimise", "Prove=true",
             f"Solver/Proof/Maximum nodes={nodes}"] for nodes in (1, 10, 100)]
-    gauss = [["Contact law/Quadrature=gauss 2", "Mesh/Cells=" + cells, "Solver/Search=" + search]
+    gauss = [["Quadrature=gauss 2", "Cells=" + cells, "Search=" + search]
              for cells in ("60, 1", "124, 1") for search in ("automatic", "full")]
     proved, plain, *results = scenes.solve_all([pad + added for added in (
-        ["Solver/Prove=true"], ["Solver/Search=none"], [], ["Solver/Search=full"], *few, *gauss)])
+        ["Prove=true"], ["Search=none"], [], ["Search=full"], *few, *gauss)])
     least = proved["functional"]
     scenes.check("proved", proved["minimum"]["state"] == "global"
                  and abs(proved["proof"]["lower_bound"] - least) <= 1e-8 * abs(least))
@@ -56,11 +55,9 @@ def check_many_points():
     nodes comes first, and leaves nothing to search for."""
     points = [(4e-5 * k, .3 * math.sin(math.pi * k / 200)**2 * (1 + .1 * math.sin(k)))
               for k in range(200)] + [(8e-3, 0.)]
-    result = scenes.solve("Mesh/Lengths=0.4, 0.04", "Mesh/Cells=40, 4",
-                          "Boundary conditions/Clamped boundaries=left",
-                          "Boundary conditions/Contact boundary=bottom",
-                          "Loads/Traction right=0; 0.1", "Contact law/Law=curve",
-                          "Contact law/Curve=" + ", ".join(f"{s:.8g}:{t:.8g}" for s, t in points))
+    result = scenes.solve("Lengths=0.4, 0.04", "Cells=40, 4", "Clamped boundaries=left",
+                          "Contact boundary=bottom", "Traction right=0; 0.1", "Law=curve",
+                          "Curve=" + ", ".join(f"{s:.8g}:{t:.8g}" for s, t in points))
     scenes.check("many points", result["minimum"]["state"] == "global"
                  and result["minimum"]["search_trials"] == 0, result["minimum"])
 
@@ -72,18 +69,18 @@ def main(count=5, first=0):
         draw = Draw(first + number)
         number += 1
         scene, height = patched_scene(draw)
-        opening = scenes.solve(*scene, "Contact law/Law=none")["largest_opening"]
+        opening = scenes.solve(*scene, "Law=none")["largest_opening"]
         if not opening:
             continue
         tried += 1
         threshold = opening * draw.magnitude(-2., -0.1)
-        scene += [f"Contact law/Bond threshold={threshold}",
-                  f"Contact law/Bond stiffness={draw.magnitude(-2.5, 1.) / height}"]
+        scene += [f"Bond threshold={threshold}",
+                  f"Bond stiffness={draw.magnitude(-2.5, 1.) / height}"]
         if draw.chance(0.5):
-            scene.append(f"Contact law/Initial gap={threshold * draw.uniform(0.1, 1.6)}"
+            scene.append(f"Initial gap={threshold * draw.uniform(0.1, 1.6)}"
                          f"*(1-cos({draw.uniform(2., 12.)}*x))/2")
         found = scenes.solve(*scene)
-        proved = scenes.solve(*scene, "Solver/Prove=true", "Solver/Proof/Maximum nodes=1000")
+        proved = scenes.solve(*scene, "Prove=true", "Solver/Proof/Maximum nodes=1000")
         scenes.check(f"scene {first + number - 1}",
                      found["status"] == proved["status"] == "success", found["errors"])
         check_word(f"scene {first + number - 1}", found, proved["functional"])

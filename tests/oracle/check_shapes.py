@@ -67,8 +67,7 @@ def read_displacement(body):
     first = {}
     for k in range(piece.n_points):
         first.setdefault(piece.points[3 * k:3 * k + dim], k)
-    written = [EXACT(line) for line in
-               pathlib.Path("output/displacement.txt").read_text().split()]
+    written = [EXACT(line) for line in pathlib.Path("output/displacement.txt").read_text().split()]
     require(len(written) == body.n and len(first) == len(points),
             "wrong success: mesh", f"{len(written)} of {body.n} unknowns")
     u = [None] * body.n
@@ -81,8 +80,7 @@ def read_displacement(body):
         w = written[dim * n:dim * n + dim]
         cartesian = [dot(row, w) + x for row, x in
                      zip(inverse(frame), body.to_cartesian(body.G, v))]
-        error = math.dist(map(float, cartesian),
-                          piece.at_points["displacement"][3 * k:3 * k + dim])
+        error = math.dist(map(float, cartesian), piece.at_points["displacement"][3 * k:3 * k + dim])
         require(error <= 1e-6 * size, "wrong success: body.vtu",
                 f"differs from displacement.txt by {error:.1e} of {size:.1e}")
         u[dim * v:dim * v + dim] = [dot(row, cartesian) for row in body.rows[v]]
@@ -98,9 +96,8 @@ def check_profile(body, s, force, tolerance, of_displacements):
     require(len(rows) == len(s), "wrong success: contact_profile.csv",
             f"{len(rows)} rows for {len(s)} contact nodes")
     for (v, number), i in body.node_of.items():
-        at = [row for row in rows if math.dist(
-            [row[x] for x in "xyz"[:body.dim]], body.points[v])
-            <= 1e-9 * body.mesh.length]
+        at = [row for row in rows if math.dist([row[x] for x in "xyz"[:body.dim]],
+                                               body.points[v]) <= 1e-9 * body.mesh.length]
         gap = body.gaps[v][number]
         # At a corner there are several.
         require(any(abs(row["u_nu"] - s[i] - gap) <= of_displacements
@@ -125,16 +122,13 @@ def check_reactions(body, summary, residual, tolerance):
     pairs = {"applied_force": [sum(body.applied[k::dim]) for k in range(dim)],
              "clamped_reaction": supports, "contact_reaction": contact}
     printed = {name: summary[name] for name in pairs}
-    if any(point.is_held for point in body.bonds) or (
-            body.held & set(body.normals) - body.clamped):
+    if any(point.is_held for point in body.bonds) or (body.held & set(body.normals) - body.clamped):
         for of in (pairs, printed):
             of["reactions"] = [sum(map(EXACT, two)) for two in zip(
                 of.pop("clamped_reaction"), of.pop("contact_reaction"))]
     for name, own in pairs.items():
-        require(all(abs(EXACT(x) - y) <= tolerance
-                    for x, y in zip(printed[name], own)),
-                f"wrong success: {name}",
-                f"{printed[name]}, not {list(map(float, own))}")
+        require(all(abs(EXACT(x) - y) <= tolerance for x, y in zip(printed[name], own)),
+                f"wrong success: {name}", f"{printed[name]}, not {list(map(float, own))}")
 
 
 class Result:
@@ -164,14 +158,12 @@ class Result:
 
     def is_rounding(self):
         """Whether forces are, so that nothing can be judged."""
-        return not (self.largest > 100 * max(self.noise)
-                    and self.scale > 100 * max(self.of_force))
+        return not (self.largest > 100 * max(self.noise) and self.scale > 100 * max(self.of_force))
 
     def check_forces(self):
         """Equilibrium and law."""
         body, s, size, largest = self.body, self.s, self.size, self.largest
-        inside = max((abs(self.residual[d]) - self.noise[d] for d in body.free_dofs),
-                     default=ZERO)
+        inside = max((abs(self.residual[d]) - self.noise[d] for d in body.free_dofs), default=ZERO)
         lengths = PROMISE * (min(self.M * min(
             1, self.scale / self.strength), size) if self.strength else size)
         # s comes from Cartesian components, which are rounded.
@@ -190,15 +182,13 @@ class Result:
                 ("tight law", tight / largest, BETTER),
                 ("penetration", max(s) / size, EXACT("1e-12")),
                 ("supports", fixed / size, EXACT("1e-10"))):
-            require(value <= limit, f"wrong success: {name}",
-                    f"{self.word}, {value:.1e}")
+            require(value <= limit, f"wrong success: {name}", f"{self.word}, {value:.1e}")
         of_G = body.rounding(body.G)
         check_profile(body, s, self.force, [
             BETTER * largest + x + 10 * of_G[d]
             for d, x in zip(body.contact_dofs, self.of_force)],
             EXACT("1e-12") * size + 4 * EPSILON * max(map(abs, body.G)))  # u, G and u - G
-        check_reactions(body, self.summary, self.residual,
-                        BETTER * largest + max(self.noise) * 10)
+        check_reactions(body, self.summary, self.residual, BETTER * largest + max(self.noise) * 10)
 
     def check_minimum(self, draw):
         """J, and whether it is what the word promises. Returns a class of results and
@@ -220,8 +210,7 @@ class Result:
         require(abs(J - printed) <= EXACT("1e-11") * terms, "wrong success: J", detail)
         rounding = EXACT("1e-6" if self.summary["method"] == "euclidean bundle"
                          else "1e-11") * terms
-        require(J - least >= -rounding or not are_all,
-                "the check's minimum is too high", detail)
+        require(J - least >= -rounding or not are_all, "the check's minimum is too high", detail)
         bound = (self.summary.get("proof") or {}).get("lower_bound")
         # Bounds are of J as it is, whatever the precision of the condensed problem.
         require(bound is None or EXACT(bound) <= least + EXACT("1e-15") * terms,
@@ -239,9 +228,8 @@ class Result:
         if word == "best known":
             for start in (0, -1):
                 s = body.descend([start % len(p.branches) for p in body.bonds])
-                require(body.is_off(s) or J - body.condensed_functional(s)
-                        <= BETTER * can_change + rounding,
-                        "wrong word: best known", detail)
+                require(body.is_off(s) or J - body.condensed_functional(s) <= BETTER * can_change
+                        + rounding, "wrong word: best known", detail)
         return f"solved, {word}" + ("" if is_least else " above the least"), detail
 
 
@@ -304,11 +292,10 @@ def try_scene(debond, scene, body, draw):
     pathlib.Path("shape.msh").write_text(scene.mesh.text())
     pathlib.Path("shape.prm").touch()
     limit = SECONDS_FOR_A_SCENE, SECONDS_FOR_A_SCENE + 1
-    result = subprocess.run(
-        [debond, "shape.prm"] + [f"--set={path}={value}" for path, value
-                                 in scene.settings.items()],
-        capture_output=True, text=True, check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
+    result = subprocess.run([debond, "shape.prm"] + [f"--set={path}={value}" for path,
+                                                     value in scene.settings.items()],
+                            capture_output=True, text=True, check=False,
+                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
     if result.returncode in (2, 3):
         return ("rejected" if result.returncode == 2 else "not solved",
                 message_class(result.stderr))
@@ -333,13 +320,11 @@ def main(debond, count=30, first=0, listed=None):
         if kind.startswith("solved, best known above the least"):
             missed += scene.settings["Solver/Search"] == "automatic"
             print(name, detail, flush=True)
-        is_failure = not refused and not kind.startswith(
-            ("solved", "comes off", "not judged"))
+        is_failure = not refused and not kind.startswith(("solved", "comes off", "not judged"))
         if is_failure:
             failures.append(name)
         if is_failure or number == listed:
-            print(f"{name}: {detail}", *map("=".join, scene.settings.items()),
-                  sep="\n", flush=True)
+            print(f"{name}: {detail}", *map("=".join, scene.settings.items()), sep="\n", flush=True)
         if number == listed:
             for file in ("shape.msh", "output/parameters.prm"):
                 shutil.copy(file, WORKING_DIRECTORY)

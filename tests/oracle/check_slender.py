@@ -36,12 +36,11 @@ def bar(cells, lengths=(0.4, 0.04), a=69., load=0.69, **others):
 def compare(debond, name, settings, mesh, *method):
     """Returns the largest errors of J and displacement; raises what is wrong."""
     pathlib.Path("scene.prm").touch()
-    result = subprocess.run(
-        [debond, "scene.prm", "--set=Output/Displacement=true", "--set=Output/Matrices=true",
-         "--set=Output/Directory=output",
-         *(f"--set={path}={value}" for path, value in settings.items()),
-         *("--set=Solver/" + entry for entry in method)],
-        capture_output=True, text=True, check=False)
+    result = subprocess.run([debond, "scene.prm", "--set=Output/Displacement=true",
+                             "--set=Output/Matrices=true", "--set=Output/Directory=output",
+                             *(f"--set={path}={value}" for path, value in settings.items()),
+                             *("--set=Solver/" + entry for entry in method)], capture_output=True,
+                            text=True, check=False)
     if result.returncode != 0:
         raise WrongResult("no success", result.stderr)
     body = Body(settings, mesh)

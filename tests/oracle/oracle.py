@@ -59,8 +59,7 @@ def minimise_convex(Q, g, held=None):
     for _ in range(1000):
         loose, s = np.flatnonzero(~held), 0 * g
         A = Q[np.ix_(loose, loose)]
-        if not is_exact(Q) and len(loose) and (
-                np.linalg.eigvalsh(A)[0] < 1e-11 * np.diag(Q).max()):
+        if not is_exact(Q) and len(loose) and (np.linalg.eigvalsh(A)[0] < 1e-11 * np.diag(Q).max()):
             return None
         s[loose] = solve(A, g[loose])
         beyond, force = rounding * max(map(abs, s), default=0), g - Q @ s
@@ -280,8 +279,7 @@ class Body:
         return self.of.get(f"{path} {name}") or self.of.get(path) or default
 
     def value(self, text, point):
-        return eval(compiled(text), {"N": lambda x: self.number(float(x))},
-                    dict(zip("xyz", point)))
+        return eval(compiled(text), {"N": lambda x: self.number(float(x))}, dict(zip("xyz", point)))
 
     def values(self, text, point):
         """Of the components of a vector."""
@@ -373,10 +371,8 @@ class Body:
         """What is fixed, free or a contact normal; the rows of the inverse of a frame are the
         directions along which its unknowns are displacements."""
         dim = self.dim
-        self.clamped = {v for side in self.names("Clamped boundaries")
-                        for v in self.vertices[side]}
-        fixing = {v for name, face in self.contact_faces for v in face.nodes
-                  if self.is_fixed(name)}
+        self.clamped = {v for side in self.names("Clamped boundaries") for v in self.vertices[side]}
+        fixing = {v for name, face in self.contact_faces for v in face.nodes if self.is_fixed(name)}
         self.rows, self.columns, self.kinds, self.prescribed = [], [], [], {}
         self.node_of, self.contact_dofs, self.held = {}, [], set()
         for v in range(len(self.points)):
@@ -662,9 +658,8 @@ class Body:
         if kind == "bilinear":
             return (0 * a, 0 * a), (t / a, t), (2 * energy / t, 0 * a)
         factor = self.value(self.of.get(LAW + "Traction factor", "1"), place)
-        return tuple((p, factor * t) for p, t in (
-            [self.number(float(x)) for x in point.split(":")]
-            for point in self.of[LAW + "Curve"].split(",")))
+        return tuple((p, factor * t) for p, t in ([self.number(float(x)) for x in point.split(":")]
+                                                  for point in self.of[LAW + "Curve"].split(",")))
 
     def make_bonds(self, gap=1):
         """Points with the same trace and law are one, as their sums would only make more states.
@@ -675,8 +670,7 @@ class Body:
             at = self.array([self.points[v] for v in face.vertices])
             if name == "nodal":
                 points = [(sum(w * l[k] * self.around(l @ at) for w, l in self.rule(self.dim)),
-                           [int(k == i) for i in range(self.dim)], at[k])
-                          for k in range(self.dim)]
+                           [int(k == i) for i in range(self.dim)], at[k]) for k in range(self.dim)]
             else:
                 points = [(w * self.around(l @ at), on_contact(self.degree, l), l @ at)
                           for w, l in self.rule(self.dim, name)]

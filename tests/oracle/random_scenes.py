@@ -75,8 +75,7 @@ def crossed(low, high):
     if sum(a < b for a, b in zip(low, high)) == 1:
         return [[low, high]]
     middle = tuple((a + b) // 2 for a, b in zip(low, high))
-    return [[middle] + part for face in faces_of_box(low, high)
-            for part in crossed(*face)]
+    return [[middle] + part for face in faces_of_box(low, high) for part in crossed(*face)]
 
 
 def cut_along_diagonals(first, last):
@@ -95,8 +94,7 @@ def corners(low, high):
     axes = [k for k, (a, b) in enumerate(zip(low, high)) if a < b]
     ways = [[], axes[:1], axes[:2], axes[1:2]][:2 ** len(axes)]
     ways += [way + axes[2:] for way in ways[:4 * (len(axes) == 3)]]
-    return [tuple(high[k] if k in way else x for k, x in enumerate(low))
-            for way in ways]
+    return [tuple(high[k] if k in way else x for k, x in enumerate(low)) for way in ways]
 
 
 def volume(points):
@@ -173,10 +171,9 @@ class Mesh:
         nx, ny = self.cells[:2]
         i = draw.between(1, max(nx - 2, 1))
         j = min(draw.between(1, ny), ny - 1)
-        left_out = {"L": lambda x, y: x >= i and y >= j,
-                    "step": lambda x, y: x < i and y == ny - 1,
-                    "notch": lambda x, y: x == i and y == ny - 1,
-                    "hole": lambda x, y: x == i and y == 1}.get(self.kind)
+        left_out = {"L": lambda x, y: x >= i and y >= j, "step": lambda x, y: x < i and y == ny - 1,
+                    "notch": lambda x, y: x == i and y == ny - 1, "hole": lambda x, y: x == i
+                    and y == 1}.get(self.kind)
         return [low for low in lows if not (left_out and left_out(*low[:2]))]
 
     def cut(self, draw, boxes):
@@ -188,11 +185,9 @@ class Mesh:
         turns = [(draw.below(2), draw.below(2)) for _ in range(self.dim)]
         parts = []
         for box in boxes:
-            is_turned = [(turn + every * low // 2) % 2
-                         for low, (turn, every) in zip(box[0], turns)]
-            parts += cut_along_diagonals(
-                *(tuple(box[(end + t) % 2][k] for k, t in enumerate(is_turned))
-                  for end in (0, 1)))
+            is_turned = [(turn + every * low // 2) % 2 for low, (turn, every) in zip(box[0], turns)]
+            parts += cut_along_diagonals(*(tuple(box[(end + t) % 2][k] for k,
+                                                 t in enumerate(is_turned)) for end in (0, 1)))
         return parts
 
     def boundary(self, number, faces):
@@ -202,25 +197,22 @@ class Mesh:
         for face in faces:
             if counts[frozenset(face)] > 1:
                 continue
-            names = [SIDES[k][end > 0] for k in range(self.dim)
-                     for end in (0, 2 * self.cells[k])
+            names = [SIDES[k][end > 0] for k in range(self.dim) for end in (0, 2 * self.cells[k])
                      if all(corner[k] == end for corner in face)]
             sides[names[0] if names else "cut"].append(tuple(number[c] for c in face))
         return dict(sides)
 
     def point(self, place, key):
         """Where a corner is, or the mean of the corners about it."""
-        around = list(itertools.product(*([x - 1, x + 1] if x % 2 else [x]
-                                          for x in key)))
+        around = list(itertools.product(*([x - 1, x + 1] if x % 2 else [x] for x in key)))
         places = [place(*(x // 2 for x in corner)) for corner in around]
         return tuple(sum(x) / len(places) for x in zip(*places))
 
     def box(self, draw):
         """One of the program's own, up to 1000 times as long as high."""
         self.length = draw.magnitude(-3., 3.)
-        lengths = [self.length] + [
-            self.length / draw.magnitude(0., 3. if draw.chance(0.2) else 1.)
-            for _ in range(self.dim - 1)]
+        lengths = [self.length] + [self.length / draw.magnitude(0., 3. if draw.chance(0.2) else 1.)
+                                   for _ in range(self.dim - 1)]
         lengths = draw.shuffled(lengths)
         degrees = draw.choice([0., 0., draw.uniform(-180., 180.)])
         self.settings = {"Mesh/Lengths": ", ".join(map(repr, lengths)),
@@ -229,8 +221,7 @@ class Mesh:
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
 
         def place(*key):
-            x, y, *z = (length * i / n
-                        for length, i, n in zip(lengths, key, self.cells))
+            x, y, *z = (length * i / n for length, i, n in zip(lengths, key, self.cells))
             return c * x - s * y, s * x + c * y, *z
 
         return place
@@ -250,8 +241,7 @@ class Mesh:
         angle, inner = draw.uniform(0.5, 3.), draw.uniform(0.3, 0.9)
         grading = draw.choice([1., 1., draw.uniform(0.6, 1.6)])
         depth = draw.uniform(0.3, 1.)
-        skew = draw.choice([(0., 0.), (draw.uniform(-0.3, 0.3),
-                                       draw.uniform(-0.3, 0.3))])
+        skew = draw.choice([(0., 0.), (draw.uniform(-0.3, 0.3), draw.uniform(-0.3, 0.3))])
         turns = [draw.choice([0., 0.5 * math.pi, draw.uniform(-math.pi, math.pi)])
                  for _ in range(2 * self.dim - 3)]
         mirror = draw.choice([1., 1., -1.])
@@ -267,12 +257,10 @@ class Mesh:
             return xi + shear * y, y
 
         def place(*key):
-            at = list(plane((key[0] / self.cells[0]) ** grading,
-                            key[1] / self.cells[1]))
+            at = list(plane((key[0] / self.cells[0]) ** grading, key[1] / self.cells[1]))
             if self.dim == 3:
                 zeta = key[2] / self.cells[2]
-                at = [(1. + skew[0] * zeta) * at[0], at[1] + skew[1] * zeta,
-                      depth * zeta]
+                at = [(1. + skew[0] * zeta) * at[0], at[1] + skew[1] * zeta, depth * zeta]
             at[0] *= mirror
             for k, turn in enumerate(turns):
                 a, b = k % self.dim, (k + 1) % self.dim
@@ -286,10 +274,8 @@ class Mesh:
         """Whether there are few unknowns, and no cells that are flat."""
         for cell in self.simplices:
             points = [self.points[v] for v in cell]
-            longest = max(math.dist(p, q)
-                          for p, q in itertools.combinations(points, 2))
-            if self.kind != "box" and (volume(points)
-                                       < 10. ** (-self.dim) * longest ** self.dim):
+            longest = max(math.dist(p, q) for p, q in itertools.combinations(points, 2))
+            if self.kind != "box" and (volume(points) < 10. ** (-self.dim) * longest ** self.dim):
                 return False
         return self.dim * len(self.points) <= LARGEST_DOFS
 
@@ -336,13 +322,11 @@ class Scene:
         self.dim = dim
         self.settings = {"Dimension": str(dim), **mesh.settings}
         self.E = draw.magnitude(-6., 12.)
-        self.nu = draw.uniform(0.45, 0.499) if draw.chance(0.1) else (
-            draw.uniform(-0.3, 0.45))
+        self.nu = draw.uniform(0.45, 0.499) if draw.chance(0.1) else (draw.uniform(-0.3, 0.45))
         self.is_plane_stress = dim == 2 and draw.chance(0.5)
         self.set("Material/Young modulus", self.E)
         self.set("Material/Poisson ratio", self.nu)
-        self.set("Material/Hypothesis",
-                 "plane stress" if self.is_plane_stress else "plane strain")
+        self.set("Material/Hypothesis", "plane stress" if self.is_plane_stress else "plane strain")
         names = draw.shuffled(sorted(mesh.sides))
         n_contact = 2 if draw.chance(0.25) else 1
         self.contact = names[:n_contact]
@@ -370,17 +354,15 @@ class Scene:
         """Clamps, or bonds alone; rollers on flat sides; displacements. What
         supports both hold they must agree on."""
         vertices = self.mesh.vertices
-        n_clamped = 0 if draw.chance(0.25) else draw.between(1, 2) if (
-            len(sides) > 2) else 1
+        n_clamped = 0 if draw.chance(0.25) else draw.between(1, 2) if (len(sides) > 2) else 1
         self.clamped, rest = sides[:n_clamped], sides[n_clamped:]
         self.rollers, self.moved = [], []
         for side in rest:
             if draw.chance(0.2) and self.is_flat(side) and not (
                     vertices([side]) & vertices(self.moved)):
                 self.rollers.append(side)
-            elif draw.chance(0.15) and not (
-                    vertices([side])
-                    & vertices(self.clamped + self.moved + self.rollers)):
+            elif draw.chance(0.15) and not (vertices([side]) & vertices(self.clamped + self.moved
+                                                                        + self.rollers)):
                 self.moved.append(side)
         for entry, names in (("Clamped boundaries", self.clamped),
                              ("Roller boundaries", self.rollers),
@@ -391,8 +373,7 @@ class Scene:
         """Whether all its vertices are in the plane of its first face."""
         points = [self.mesh.points[v] for v in sorted(self.mesh.vertices([side]))]
         first = [self.mesh.points[v] for v in self.mesh.sides[side][0]]
-        return all(abs(volume(first + [p])) <= 1e-12 * self.mesh.length ** self.dim
-                   for p in points)
+        return all(abs(volume(first + [p])) <= 1e-12 * self.mesh.length ** self.dim for p in points)
 
     def add_bonds(self, draw):
         """Law, quadrature and gap, of all and of sides and parts of their own; steps
@@ -437,11 +418,9 @@ class Scene:
             changes = [draw.chance(probability), draw.chance(probability)]
             stiffness, threshold = Field(a), Field(M)
             if changes[0]:
-                stiffness = self.field(draw, a * draw.uniform(0.1, 1.),
-                                       a * draw.magnitude(-1., 0.))
+                stiffness = self.field(draw, a * draw.uniform(0.1, 1.), a * draw.magnitude(-1., 0.))
             if changes[1]:
-                threshold = self.field(draw, M * draw.uniform(0.2, 1.),
-                                       M * draw.uniform(0.2, 1.))
+                threshold = self.field(draw, M * draw.uniform(0.2, 1.), M * draw.uniform(0.2, 1.))
             if changes[0] or not name:
                 self.set(f"{law}Bond stiffness{name}", str(stiffness))
             if changes[1] or not name:
@@ -477,10 +456,8 @@ class Scene:
                              ["multigrid"] * 2 + (
             ["energy bundle"] * 2 + ["euclidean bundle"] if self.clamped else []))
         is_condensed = self.clamped and method != "euclidean bundle"
-        self.set("Solver/Linear solver",
-                 "multigrid" if method == "multigrid" else "direct")
-        self.set("Solver/Method",
-                 "majorise minimise" if method == "multigrid" else method)
+        self.set("Solver/Linear solver", "multigrid" if method == "multigrid" else "direct")
+        self.set("Solver/Method", "majorise minimise" if method == "multigrid" else method)
         self.set("Solver/Euclidean bundle/Maximum iterations", "3000")
         self.set("Solver/Search", draw.choice(
             ["automatic", "automatic", "full", "none"]) if is_condensed else "automatic")
@@ -512,8 +489,7 @@ class Scene:
             None if draw.chance(0.3) else
             Field(draw.uniform(-1., 1.) * self.may_move(side, axis))
             for axis in range(self.dim)] for side in self.moved}
-        loaded = [side for side in sorted(self.mesh.sides)
-                  if side not in self.clamped + self.moved]
+        loaded = [side for side in sorted(self.mesh.sides) if side not in self.clamped + self.moved]
         for side in draw.shuffled(loaded)[:draw.between(1, 2)]:
             if draw.chance(0.2):
                 self.loads["Loads/Pressure " + side] = density(1)
@@ -524,8 +500,7 @@ class Scene:
         self.expansion = 1e-5
         if draw.chance(0.15):
             self.set("Material/Thermal expansion", self.expansion)
-            self.loads["Loads/Temperature change"] = density(
-                1, 1. / (self.expansion * self.E))
+            self.loads["Loads/Temperature change"] = density(1, 1. / (self.expansion * self.E))
         self.scale_loads(1., 1.)
 
     def may_move(self, side, axis):
@@ -545,8 +520,7 @@ class Scene:
         for path, components in self.loads.items():
             by = factor if path.startswith("Loads") else movement
             self.loads[path] = [c and c.times(by) for c in components]
-            self.set(path, "; ".join("free" if c is None else str(c)
-                                     for c in self.loads[path]))
+            self.set(path, "; ".join("free" if c is None else str(c) for c in self.loads[path]))
 
 
 def choose_loads(draw, scene, body):
@@ -599,9 +573,8 @@ def strip(lengths, cells, E, a, M, clamped, loads, law="winkler", tangential="fr
             "Material/Poisson ratio": str(nu), "Material/Hypothesis": hypothesis,
             "Boundary conditions/Clamped boundaries": clamped,
             "Boundary conditions/Contact boundary": "bottom", "Contact law/Law": law,
-            "Contact law/Tangential displacement": tangential,
-            "Contact law/Bond stiffness": str(a), "Contact law/Bond threshold": str(M),
-            **loads}, Box(lengths, cells)
+            "Contact law/Tangential displacement": tangential, "Contact law/Bond stiffness": str(a),
+            "Contact law/Bond threshold": str(M), **loads}, Box(lengths, cells)
 
 
 # ---------------------------------------- entries of scenes without an oracle

@@ -17,13 +17,15 @@ class Case:
         self.messages = []  # number of a line, path of its entry, words
         self.place = (None, "")
 
-    def add_line(self, text):
+    def add_line(self, text, but=()):
         if text.startswith("|"):
             self.lines.append(text[1:])
             self.place = (len(self.lines), "")
             return
-        for part in re.split(r" \| ", text):
+        for part in text.split(" | "):
             path, value = part.split("=", 1)
+            if path.strip() in but:
+                continue
             *sections, entry = path.strip().split("/")
             self.lines += ["subsection " + section for section in sections]
             self.lines.append(f"set {entry} ={value}")
@@ -45,8 +47,12 @@ class Case:
         return path in text and re.search(pattern.replace(r"\ .*\ ", ".*"), text)
 
 
+def paths(row):
+    return [part.split("=")[0].strip() for part in row.split(" | ")]
+
+
 def read_cases(file_name):
-    """Of "each" the entry with a message is added to the others."""
+    """Of "each" the entries with a message are added to the others, or replace them."""
     cases = []
     for block in re.split(r"^(?=\[)", open(file_name).read(), flags=re.M)[1:]:
         header, *rows = [row for row in block.split("\n") if row and row[0] != "#"]
@@ -57,10 +63,11 @@ def read_cases(file_name):
             scenes = [[*common, row] for row in rows if "  !" in row]
         for k, scene in enumerate(scenes):
             case = Case(name + f"_{k}" * bool(each), code)
+            own = paths(scene[-1]) if each else ()
             for row in scene:
                 text, *words = re.split(r"(?:^|  )!(?=!? )", row, 1)
                 if text:
-                    case.add_line(text)
+                    case.add_line(text, () if row is scene[-1] else own)
                 for message in words:
                     case.add_message(message.lstrip(" "))
             cases.append(case)
