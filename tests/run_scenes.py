@@ -2,6 +2,7 @@
 """Runs scenes of which a test writes the entries, and collects what does not hold."""
 import csv
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -65,6 +66,12 @@ def sawteeth(stiffnesses, thresholds):
         softer = stiffnesses[k + 1] if k + 1 < len(stiffnesses) else 0.
         points += [f"{M!r}:{a * M!r}", f"{M!r}:{softer * M!r}"]
     return ", ".join(points)
+
+
+def turned(entry, degrees):
+    """A condition on x and y for the body turned about the origin."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return entry.replace("y", f"({c!r} * y - {s!r} * x)")
 
 
 class Strand(threading.Thread):

@@ -11,7 +11,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from run_scenes import Scenes
+from run_scenes import Scenes, turned
 
 scenes = Scenes(sys.argv[1])
 solve, check, close = scenes.solve, scenes.check, scenes.close
@@ -58,12 +58,6 @@ def check_different_strips():
         for row, (factor, _, least) in zip(path, rows, strict=True):
             close(f"{tangential}, {factor}, on a path", row["global_J"], least, 1e-10)
             check("is proved", row["global_minimum"] == "global")
-
-
-def turned(entry, degrees):
-    """A condition on x and y for the body turned about the origin."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return entry.replace("y", f"({c!r} * y - {s!r} * x)")
 
 
 def check_twice_the_half():
@@ -392,16 +386,20 @@ def check_rings():
     rings = ["Source=file", "File=rings.geo", "Young modulus=100", "Young modulus outer=300",
              "Poisson ratio=0.3", "Clamped boundaries=", "Roller boundaries=low, up"]
     loads = ["Pressure rim=if(x > y, -1, 0.3)"]
-    one = solve(*rings, *loads, "Contact boundary=")["functional"]
-    glued = [*rings, "Contact boundary=cut_1", NODAL]
-    for cuts in ("inner | outer", "outer | inner"):
-        off = []
-        for k in (1e5, 1e7):
-            result = solve(*glued, *loads, "Cuts=" + cuts, *bonds(k, 1.))
-            off.append(result["functional"] / one - 1)
-            check(f"{cuts}, {k}: balance", result["force_imbalance"] < 1e-9)
-        check(f"{cuts}: one body but for 1 / k", 0 < off[1] < 1e-5
-              and abs(off[0] / off[1] / 100 - 1) < 0.1, off)
+    glued = [*rings, "Contact boundary=cut_1"]
+    for tangential, more in (("fixed", [NODAL]), ("bonded", [NODAL]),
+                             ("bonded", ["Degree=2", "Quadrature=gauss 3"])):
+        one = solve(*rings, *loads, *more, "Contact boundary=")["functional"]
+        for cuts in ("inner | outer", "outer | inner"):
+            off = []
+            for k in (1e5, 1e7):
+                shear = [f"Bond shear stiffness={.7 * k}"] if tangential == "bonded" else []
+                result = solve(*glued, *loads, *more, "Cuts=" + cuts, *bonds(k, 1.), *shear,
+                               "Tangential displacement=" + tangential, "Search=none")
+                off.append(result["functional"] / one - 1)
+                check(f"{cuts}, {k}: balance", result["force_imbalance"] < 1e-9)
+            check(f"{cuts}, {tangential}, {more[0]}: one body but for 1 / k", 0 < off[1] < 1e-5
+                  and abs(off[0] / off[1] / 100 - 1) < 0.1, off)
     # The outer ring is shrunk by heat: the pressure between both in plane stress.
     for degree, tolerance in ((1, 0.03), (2, 0.003)):
         result = solve(*glued, "Cuts=inner | outer", FREE, *bonds(0, 1.),

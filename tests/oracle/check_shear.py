@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from run_scenes import Scenes
+from run_scenes import Scenes, turned
 
 # Whether the least J is searched for and proved.
 PROVES = True
@@ -631,43 +631,6 @@ def check_limits():
             last = off
 
 
-RINGS = """h = 0.3;
-Point(1) = {1,0,0,h}; Point(2) = {2,0,0,h}; Point(3) = {3,0,0,h};
-Point(4) = {0,1,0,h}; Point(5) = {0,2,0,h}; Point(6) = {0,3,0,h}; Point(7) = {0,0,0,h};
-Circle(1) = {1,7,4}; Circle(2) = {2,7,5}; Circle(3) = {3,7,6};
-Line(4) = {1,2}; Line(5) = {2,3}; Line(6) = {4,5}; Line(7) = {5,6};
-Curve Loop(1) = {4,2,-6,-1}; Plane Surface(1) = {1};
-Curve Loop(2) = {5,3,-7,-2}; Plane Surface(2) = {2};
-Physical Surface("inner") = {1}; Physical Surface("outer") = {2};
-Physical Curve("rim") = {3}; Physical Curve("low") = {4,5};
-"""
-
-
-def check_rings():
-    """Along a curved interface both stiffnesses without end make one body."""
-    scenes.section("Rings")
-    (scenes.directory / "rings.geo").write_text(RINGS)
-    rings = ["Source=file", "File=rings.geo", "Young modulus=100", "Young modulus outer=300",
-             "Poisson ratio=0.3", "Clamped boundaries=low", "Pressure rim=if(x > y, -1, 0.3)"]
-    for more in ([NODAL], DEGREE_2):
-        one = solve(*rings, *more, "Contact boundary=")["functional"]
-        for cuts in ("inner | outer", "outer | inner"):
-            off = []
-            for k in (1e5, 1e7):
-                result = solve(*rings, *more, "Cuts=" + cuts, *bonds(k, .7 * k, 1e3),
-                               "Contact boundary=cut_1", FROM_REST)
-                off.append(result.get("functional", 0.) / one - 1)
-                check(f"{cuts}, {k}: balance", result["force_imbalance"] < 1e-9)
-            check(f"{cuts}, {more[0]}: one body but for 1 / k", 0 < off[1] < 1e-5
-                  and abs(off[0] / off[1] / 100 - 1) < 0.1, off)
-
-
-def turned(entry, degrees):
-    """A condition on x and y for the body turned about the origin."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return entry.replace("y", f"({c!r} * y - {s!r} * x)")
-
-
 def check_invariances():
     scenes.section("Invariances")
     both = ["Displacement tl=0.2; 1", "Displacement bl=-0.1; -0.2"]
@@ -800,5 +763,5 @@ def check_nothing_left():
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_columns, check_pressed, check_layers, check_softening_column, check_tractions,
     check_all_held, check_oblique, check_strips, check_three_strips, check_paths,
-    check_mixed_mode, check_limits, check_rings, check_invariances, check_nothing_left)))
+    check_mixed_mode, check_limits, check_invariances, check_nothing_left)))
 scenes.end()

@@ -13,6 +13,7 @@ class Case:
     def __init__(self, name, code):
         self.name = name
         self.code = int(code or 2)
+        self.mark = "debond: " if self.code else "  note  "
         self.lines = []
         self.messages = []  # number of a line, path of its entry, words
         self.place = (None, "")
@@ -87,7 +88,7 @@ def main(debond, file_name):
 
     n_failures = 0
     for case, text in zip(cases, logs, strict=True):
-        left = [line for line in text.split("\n") if line.startswith("debond: ")]
+        left = [line for line in text.split("\n") if line.startswith(case.mark)]
         faults = []
         for message in case.messages:
             found = [line for line in left if case.is_message(message, line)]

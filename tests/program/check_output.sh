@@ -58,41 +58,6 @@ grep -q '"functional_from_start": -7.35454955' found/summary.json ||
 [ "$(column found/history.csv functional | tail -n 2 |
   xargs printf '%.9e ')" = "-7.354549556e-05 -2.397312753e-04 " ] || fail "history: $(cat found/history.csv)"
 
-# What is suspicious is noted, and nothing else.
-notes() {
-  "$debond" bar.prm "$@" --set "Output/Directory=noted" >log
-  sed -n 's/^  note  *//p' log
-}
-small="Loads/Traction top=0; -1e-3"
-[ -z "$(notes --set "Mesh/Cells=40, 4" --set "$small")" ] || fail "$(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=" |
-  grep -qx "the scene has no load" || fail "no load: $(cat log)"
-notes --set "Loads/Traction right=0; 1" --set "Loads/Traction left=0; 0" |
-  grep "effect" >clamped
-[ "$(cat clamped)" = "no effect of Loads/Traction right: the displacement is given there" ] ||
-  fail "a traction on a clamped side: $(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=" \
-  --set "Loads/Traction bottom=0.1; 0" |
-  grep -q "^all loads act where the body cannot move" || fail "tangential: $(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Initial gap=0.003" |
-  grep -q "^all bonds are broken at rest" || fail "gap: $(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Bond threshold=2" |
-  grep -q "^bonds break beyond an opening of 2, more than the body" || fail "size: $(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Bond stiffness=0" |
-  grep -qx "no node of the contact boundary has bonds" || fail "no bonds: $(cat log)"
-# Bonds that are rigid at first have no stiffness.
-notes --set "Mesh/Cells=40, 4" --set "$small" --set "Contact law/Law=curve" \
-  --set "Contact law/Curve=0:0.1, 0.01:0" | grep "bonds" && fail "rigid at first: $(cat log)"
-notes --set "Mesh/Cells=40, 4" --set "$small" --set Constants/a=1 \
-  --set Constants/b=3*a --set "Loads/Constants=c = 2, d = c" >idle
-[ "$(cat idle)" = "no effect of the constant b: nothing uses it
-no effect of the constant d: nothing uses it" ] || fail "idle constants: $(cat idle)"
-notes --set "Mesh/Cells=2, 8" --set "$small" |
-  grep -q "^the mesh is too coarse for J" || fail "coarse: $(cat log)"
-# Strained by 0.1 in the direction of a side that nothing holds.
-notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=0; 6.9" |
-  grep -q "^displacement gradients up to " || fail "gradients: $(cat log)"
-
 # Switched off.
 "$debond" bar.prm --set "Output/Directory=few" --set "Output/Body VTU=false" \
   --set "Output/Contact VTU=false" --set "Output/Contact profile=false" \

@@ -9,14 +9,14 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from run_scenes import Scenes, read_table
+from run_scenes import Scenes, full_entry, read_table
 from vtu import Piece
 
 scenes = Scenes(sys.argv[1])
 check, close = scenes.check, scenes.close
-PLANE = ["Mesh/Cells=10, 2", "Loads/Traction top=0.1; if(x < 0.2, 0.69, -0.345)"]
-SOLID = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.08",
-         "Loads/Traction top=0.1; if(x < 0.2, 0.69, -0.345); 0.05"]
+PLANE = ["Cells=10, 2", "Traction top=0.1; if(x < 0.2, 0.69, -0.345)"]
+SOLID = ["Dimension=3", "Lengths=0.4, 0.04, 0.08",
+         "Traction top=0.1; if(x < 0.2, 0.69, -0.345); 0.05"]
 STATES = {"broken but closed": -1, "contact": 0, "bonded": 1, "kink": 2, "broken": 3, "free": 4,
           "held": 5}
 
@@ -28,7 +28,7 @@ def near(name, a, b, scale=1.):
 def solve(name, *settings):
     """The folder, and the contact nodes by their places."""
     scenes.section(name)
-    run = scenes.run("scene.prm", *("--set=" + entry for entry in (
+    run = scenes.run("scene.prm", *("--set=" + full_entry(entry) for entry in (
         *settings, "Output/Directory=" + name)))
     check("exit code", run.returncode == 0, run.stderr)
     rows = read_table(scenes.directory / name / "contact_profile.csv")
@@ -102,7 +102,7 @@ def check_files(name, dim, n_cells, n_points, n_faces, *settings):
 
 
 def check_quadratic(name, dim, cell_type, n_points, said, *settings):
-    folder, log, profile = solve(name, *settings, "Mesh/Degree=2")
+    folder, log, profile = solve(name, *settings, "Degree=2")
     check("said", said in log, log)
     body, edges = Piece(folder / "body.vtu"), [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
     n_corners, edges = dim + 1, edges[:3 * (dim - 1)]
@@ -126,17 +126,16 @@ def check_quadratic(name, dim, cell_type, n_points, said, *settings):
     check("many", len(found) >= 10 and max(map(abs, found)) > 1e-4, found)
 
 
-plane_strain = [*PLANE, "Material/Hypothesis=plane strain"]
+plane_strain = [*PLANE, "Hypothesis=plane strain"]
 check_files("plane", 2, 80, 53, 10, *plane_strain)
 # Fields of more than one block.
-check_files("fine", 2, 40960, 20833, 320, *plane_strain, "Mesh/Cells=320, 32")
-check_files("solid", 3, 384, 144, 64, *SOLID, "Mesh/Cells=8, 1, 2")
+check_files("fine", 2, 40960, 20833, 320, *plane_strain, "Cells=320, 32")
+check_files("solid", 3, 384, 144, 64, *SOLID, "Cells=8, 1, 2")
 # Held vertices move with what they are given, and so do the edges beside them.
 for degree in "1", "2":
-    lifted, _, _ = solve("lifted" + degree, *PLANE, "Mesh/Degree=" + degree,
-                         "Contact law/Quadrature=gauss 4", "Load path/Displacement factors=0, 2",
-                         "Boundary conditions/Clamped boundaries=left",
-                         "Boundary conditions/Displacement right=0; 0.001")
+    lifted, _, _ = solve("lifted" + degree, *PLANE, "Degree=" + degree, "Quadrature=gauss 4",
+                         "Displacement factors=0, 2", "Clamped boundaries=left",
+                         "Displacement right=0; 0.001")
     body, contact = Piece(lifted / "body.vtu"), Piece(lifted / "contact.vtu")
     heights = {place(body, i): body.at_points["displacement"][3 * i + 1]
                for i in range(body.n_points)}
@@ -145,17 +144,17 @@ for degree in "1", "2":
              for i in range(contact.n_points) if place(contact, i) in heights]
     check("lifted end", abs(found[-1][0] - 0.002) < 1e-8 and len(found) >= 20, found[-1])
     check("as in the body", all(max(of) - min(of) < 1e-7 for of in found))
-closed, _, profile = solve("closed", *PLANE, "Load path/Factors=9, 0", "Load path/Bonds heal=false",
+closed, _, profile = solve("closed", *PLANE, "Factors=9, 0", "Bonds heal=false",
                            "Output/Load path contact VTU=true")
 check_contact(closed, profile, 2, 10)
 states = [{*Piece(closed / "load_path" / f"contact-0000{step}.vtu").in_cells["bond_state"]}
           for step in (1, 2)]
 check("broken, and closed again", 3 in states[0] and -1 not in states[0]
       and -1 in states[1] and not states[1] & {1, 3}, states)
-_, _, sliding = solve("sliding", *PLANE, "Contact law/Tangential displacement=free")
+_, _, sliding = solve("sliding", *PLANE, "Tangential displacement=free")
 check("no tangential forces", not any(row["tangential_force_x"] for row in sliding.values()))
 check_quadratic("quadratic plane", 2, 22, 185, "80 triangles, 0.4 x 0.04, quadratic displacements\n",
-                *PLANE, "Contact law/Quadrature=gauss 8")
+                *PLANE, "Quadrature=gauss 8")
 check_quadratic("quadratic solid", 3, 24, 587, "quadratic displacements\n", *SOLID,
-                "Mesh/Cells=6, 1, 2", "Contact law/Quadrature=gauss 4")
+                "Cells=6, 1, 2", "Quadrature=gauss 4")
 scenes.end()
