@@ -171,6 +171,13 @@ class Scenes:
                     [strand.scene for strand in strands])):
                 strand.result = result
 
+    def all_of(self, names, *checks):
+        """The functions check_... of a module that have no arguments, and others with titles;
+        ends the program."""
+        self.together(*((name[6:].replace("_", " "), function) for name, function in names.items()
+                        if name.startswith("check_") and not function.__code__.co_argcount), *checks)
+        self.end()
+
     def section(self, title):
         """Of the checks that follow."""
         strand = threading.current_thread()

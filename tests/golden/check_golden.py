@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""check_golden.py DEBOND PRM_DIRECTORY [NAME...]: what scenes with every pair of
-features that go together answered when their list, golden.tsv, was made. A change of structure keeps it: exit
-code, J, the word for the minimum, bond states. A lower J, a stronger word and a scene that
-was refused and runs are printed as better and are no failure. Without a name a third of them,
-with each scene and each entry; with "all" all; with names only those, whose files stay in a
-folder that is printed."""
+"""check_golden.py DEBOND PRM_DIRECTORY [NAME...]: what scenes with every pair of features that go
+together answered when their list, golden.tsv, was made; pairs with ranks that ranks/check_ranks.py
+compares are left out. A change of structure keeps it: exit code, J, the word for the minimum, bond
+states. A lower J, a stronger word and a scene that was refused and runs are printed as better and
+are no failure. Without a name a third of them, with each scene and each entry; with "all" all; with
+names only those, whose files stay in a folder that is printed."""
 import concurrent.futures, json, os, re, shutil, subprocess, sys, tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))

@@ -288,7 +288,4 @@ def check_strong_corner():
           and "has not been checked" in unchecked["message"], unchecked["message"])
 
 
-scenes.together(*((test.__name__, test) for test in (
-    check_constant_strain, check_closed_forms, check_benchmark, check_quadratic_bodies,
-    check_refinement, check_thin_strip, check_strong_corner)))
-scenes.end()
+scenes.all_of(globals())

@@ -442,7 +442,6 @@ def check_cuts():
 
 def check_refined():
     """On the mesh that the program came to, whose vertices are numbers of single precision."""
-    scenes.section("Refined")
     for more in ([], DEGREE_2):
         settings = [*AXIS, *ISOTROPIC, *more, "Lengths=2, 1", "Cells=4, 2",
                     "Contact boundary=bottom", "Roller boundaries=right", "Traction top=0; 0.1*x",
@@ -557,10 +556,7 @@ def check_units():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) == 2:
-        scenes.together(*((check_.__name__, check_) for check_ in (
-            check_domes, check_cuts, check_directions, check_tube, check_cylinder, check_units)),
-            *((f"path {number}", check_path, number) for number in range(12)))
-        check_refined()
     check_random(*map(int, sys.argv[2:]))
-    scenes.end()
+    if len(sys.argv) > 2:
+        scenes.end()
+    scenes.all_of(globals(), *((f"path {number}", check_path, number) for number in range(12)))

@@ -172,13 +172,9 @@ def check_again(method, tolerance, distance):
         close(f"{method}, {threads} threads", J[-1], J[0], 1e-12)
 
 
-check_plane()
-check_solid()
 check_again("majorise minimise", 1e-12, 1e-9)
 check_again("energy bundle", 1e-12, 1e-9)
 check_again("euclidean bundle", 1e-9, 1e-3)
-scenes.together(*((test.__name__, test) for test in (
-    check_temperature, check_layers, check_refused)))
 # What was written can be run again from another folder.
 (scenes.directory / "elsewhere").mkdir()
 output = scenes.directory / "output"
@@ -186,4 +182,4 @@ scenes.run("scene.prm", f"--set=Output/Directory={output}", "--set=" + full_entr
 shutil.copy(output / "parameters.prm", scenes.directory / "elsewhere")
 again = scenes.run("elsewhere/parameters.prm")
 check("the effective scene", again.returncode == 0, again.stderr)
-scenes.end()
+scenes.all_of(globals())

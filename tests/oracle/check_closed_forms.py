@@ -248,12 +248,11 @@ def check_hard_laws():
         for one, *others in zip(*steps):
             for other in others:
                 close("J of a step", other, 1e9 * one, 1e-10)
-    patches = solve("Young modulus=1", "Poisson ratio=0.0958529",
-                    "Clamped boundaries=top", "Cells=124, 1",
-                    "Lengths=1.7075, 0.111103", "Traction bottom=0; 0.950284"
-                    "*sin(6.283*4.56869*x/1.7075+5.64752)+0.347743",
-                    "Bond threshold=0.00697278", "Method=automatic",
-                    "Bond stiffness=1372.05", "Search=full")
+    patches = solve("Young modulus=1", "Poisson ratio=0.0958529", "Clamped boundaries=top",
+                    "Cells=124, 1", "Lengths=1.7075, 0.111103",
+                    "Traction bottom=0; 0.950284*sin(6.283*4.56869*x/1.7075+5.64752)+0.347743",
+                    "Bond threshold=0.00697278", "Method=automatic", "Bond stiffness=1372.05",
+                    "Search=full")
     close("five patches", patches["functional"], -4.56234928075e-3, 1e-9)
 
 
@@ -681,7 +680,8 @@ def check_gap_at_clamp(gap):
     check("more than rounding", "negative where the body is held" in result["errors"])
 
 
-scenes.together(
+scenes.all_of(
+    globals(),
     *((f"{test.__name__}, {dim}D, {name}", test, dim, length, modulus)
       for dim, name, length, modulus in SYSTEMS
       for test in (check_stretched, check_column_on_bonds, check_pad, check_end_of_curve,
@@ -699,10 +699,6 @@ scenes.together(
         (2, 2, "gauss 2", 25, "by part"), (2, 2, "gauss 4", 50, "by place"),
         (2, 1, "gauss 4", 33, "by place"), (2, 2, "gauss 4", 33, "by place"),
         (3, 1, "nodal", 10, "by place"), (3, 2, "gauss 2", 10, "by part"))),
-    *((test.__name__, test, *arguments) for test, *arguments in (
-        [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
-        [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],
-        [check_forgotten], [check_too_slender],
-        [check_heated, 2, "plane stress"], [check_heated, 2, "plane strain"],
-        [check_heated, 3, "plane stress"])))
-scenes.end()
+    *((f"{test.__name__} {arguments}", test, *arguments) for test, *arguments in (
+        [check_corner, 2], [check_corner, 3], [check_heated, 2, "plane stress"],
+        [check_heated, 2, "plane strain"], [check_heated, 3, "plane stress"])))

@@ -32,7 +32,6 @@ def bonds(stiffness, threshold):
 
 def check_different_strips():
     """E 1000 above 2000: J from rest, and the least one over all states."""
-    scenes.section("Different strips")
     table = {"fixed": ((.2, 3.773938581183e-01, 3.303907810615e-01),
                        (.6, 1.275625332398, 1.216779655958), (1., 2.775499044327, 2.635338038816),
                        (1.5, 5.370488170676, 5.215716899210)),
@@ -61,7 +60,6 @@ def check_different_strips():
 
 
 def check_twice_the_half():
-    scenes.section("Twice the half")
     factors = [NO_HEALING, "Displacement factors=0.05, 0.1, 0.3, 0.6, 1, 1.5, 1, 0.3, 0, 2"]
     k, M = 50., math.sqrt(2 * 0.02 / 50)
     strips = [*JOINT, "Young modulus=1000", FREE]
@@ -126,7 +124,6 @@ def check_twice_the_half():
 
 
 def check_softening():
-    scenes.section("Softening")
     law = ["Law=bilinear", "Bond stiffness=100",
            "Bond strength=1", "Fracture energy=0.02", FREE, NODAL]
     strips = [*JOINT, "Young modulus=2000", "Young modulus upper=1000", *law]
@@ -159,7 +156,6 @@ def check_sliding():
     """Glue of a M = sqrt(2 100 0.1) = 4.47 that is 50 long bears 224 along itself, by Volkersen a
     little less. A fibre that is pushed out has facets whose normals have a part along its axis:
     without friction nothing should hold it."""
-    scenes.section("Sliding")
     lap = ["Lengths=50, 4", "Cells=50, 4", "Cuts=y = 2", "Parts/upper end=left: y > 2",
            "Parts/lower end=right: y < 2", "Young modulus=70000", "Poisson ratio=0",
            "Clamped boundaries=", "Roller boundaries=top, bottom", "Displacement lower end=0; free",
@@ -197,7 +193,6 @@ Physical Volume("matrix") = {3};
 
 
 def check_limits():
-    scenes.section("Limits")
     strips = [*JOINT, "Young modulus=2000", "Young modulus upper=1000",
               *ends("0.2; 0.3", "free; -0.2")]
     for name, more in (("degree 1", [NODAL]),
@@ -231,7 +226,6 @@ def check_limits():
 
 def check_arms():
     """C^(1/3) of an arm is linear in the length of the crack, with the slope (1 / (3 E I))^(1/3)."""
-    scenes.section("Arms of different thickness")
     roots = {}
     for length in (60, 80):
         result = solve("Lengths=100, 3", "Cells=100, 3", "Cuts=y = 1", "Degree=2",
@@ -249,7 +243,6 @@ def check_arms():
 
 def check_supports():
     """Where either body is held at the end of the interface the answer is the same."""
-    scenes.section("Supports")
     base = ["Lengths=4, 2", "Cells=4, 2", "Cuts=y = 1", "Parts/tl=left: y > 1",
             "Parts/bl=left: y < 1", "Parts/tr=right: y > 1", "Parts/br=right: y < 1",
             "Young modulus=100", "Poisson ratio=0.3", NODAL, *bonds(20, 0.1),
@@ -293,7 +286,6 @@ def check_supports():
 
 def check_refined():
     """Both sides are bisected alike, where only one of them needs it, too."""
-    scenes.section("Refined")
     strips = [*JOINT, "Young modulus=100", "Young modulus upper=10000", FREE,
               *bonds(50, 0.0282842712474619), *ends("free; 0.5", "free; -0.5")]
     fine = solve(*(e for e in strips if "Cells" not in e), "Cells=320, 32", "Degree=2",
@@ -329,7 +321,6 @@ def small(*settings):
 
 def check_edges():
     """What random joints, enumerated by another program, have shown to be hard."""
-    scenes.section("Edges")
     # The bond at the end of the interface, which both supports stretch, is in J and in the
     # reactions, whichever way the supports are said.
     for settings in ([CLAMPED + "ur", MOVED + "lr=0; -0.03"], [MOVED + "ur=0; 0",
@@ -381,7 +372,6 @@ Physical Curve("low") = {4,5}; Physical Curve("up") = {6,7};
 
 def check_rings():
     """Against the ring as one body, and a press fit of two in closed form."""
-    scenes.section("Quarter rings from Gmsh")
     (scenes.directory / "rings.geo").write_text(RINGS)
     rings = ["Source=file", "File=rings.geo", "Young modulus=100", "Young modulus outer=300",
              "Poisson ratio=0.3", "Clamped boundaries=", "Roller boundaries=low, up"]
@@ -414,8 +404,4 @@ def check_rings():
         close(f"press fit, degree {degree}", result["contact_reaction"][0], 2 * pressure, tolerance)
 
 
-scenes.together(*((check_.__name__, check_) for check_ in (
-    check_different_strips, check_twice_the_half, check_softening, check_sliding, check_limits,
-    check_arms,
-    check_supports, check_refined, check_edges, check_rings)))
-scenes.end()
+scenes.all_of(globals())

@@ -64,7 +64,7 @@ def bonds(a, M):
     return [f"Bond stiffness={a}", f"Bond threshold={M}"]
 
 
-scenes.together(("units", check_units), ("contrasts", check_contrasts), *((name, check_scene, *case) for name, *case in (
+scenes.all_of(globals(), *((name, check_scene, *case) for name, *case in (
     ("2D", 16, 18, "80, 8"),
     ("2D, fine", 0, 18, "320, 32"),
     ("3D", 16, 18, "40, 4, 4", *SOLID),
@@ -93,4 +93,3 @@ scenes.together(("units", check_units), ("contrasts", check_contrasts), *((name,
     *((f"plane strain, nu = {nu}", linear, contact, "80, 8", "Hypothesis=plane strain",
        f"Poisson ratio={nu}") for nu, linear, contact in (
         (0.45, 40, 50), (0.49, 90, 110))))))
-scenes.end()

@@ -220,9 +220,8 @@ def check_no_free_vertex(dim, *kind):
 
 QUADRATIC = ["Degree=2", "Quadrature=gauss 3"]
 MM = "Method=majorise minimise"
-scenes.together(
-    *((f"{sides} sides", check_polygon, sides) for sides in (10, 11, 12, 13)),
-    ("disc", check_disc), ("drawn in", check_drawn_in), ("tips", check_tips),
+scenes.all_of(
+    globals(), *((f"{sides} sides", check_polygon, sides) for sides in (10, 11, 12, 13)),
     *((f"dome {rough} {extra}", check_dome, rough, *extra) for rough in (0., 0.02, 0.06)
       for extra in (["Tangential displacement=fixed"],
                     ["Tangential displacement=fixed", *QUADRATIC])),
@@ -233,4 +232,3 @@ scenes.together(
         [MM, "Search=full"], [MM, "Factors=0.5, 1"],
         [MM, "Law=none"],
         [MM, "Quadrature=gauss 8"] if dim == 2 else QUADRATIC)))
-scenes.end()

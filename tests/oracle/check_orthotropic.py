@@ -89,7 +89,6 @@ def box(dim, *more):
 
 def check_uniform_strains():
     """Prescribed on all of the boundary."""
-    scenes.section("Uniform strains")
     strains = ((1, 0, 0, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 0, 1, 0, 0),
                (.3, -.7, .2, .5, .4, -.6))
     for (name, dim, is_plane_stress, more), angle, e in itertools.product(
@@ -106,7 +105,6 @@ def check_uniform_strains():
 
 def check_uniaxial():
     """Free along y and z but for plane strain, with heat."""
-    scenes.section("Uniaxial stress")
     S = compliance()
     for name, dim, is_plane_stress, more in KINDS:
         rollers = "left, bottom" + ", back" * (dim == 3)
@@ -131,7 +129,6 @@ def compare(name, one, other, tolerance, without=()):
 
 
 def check_equal_materials():
-    scenes.section("Equal materials")
     nu = 0.3
     isotropic = ["Young modulus=1000", f"Poisson ratio={nu}"]
     strip = ["Lengths=4, 1", "Cells=16, 4", "Contact boundary=bottom", "Clamped boundaries=left",
@@ -183,7 +180,6 @@ def check_equal_materials():
 
 def check_certificates():
     """The J of a finer mesh is in the interval for the continuous problem."""
-    scenes.section("Certificates")
     strip = ["Lengths=4, 0.5", "Contact boundary=bottom", "Clamped boundaries=left",
              "Traction right=0; 2", "Bond stiffness=400", "Bond strength=5"]
     hard = ((4000., 300., 300.), (0.3, 0.3, 0.4), (250., 250., 100.))
@@ -204,6 +200,4 @@ def check_certificates():
                 close(f"{angle}, {kind}, turned by {rotation}", same["lower"], found["lower"], 1e-8)
 
 
-scenes.together(*((check_.__name__, check_) for check_ in (
-    check_uniform_strains, check_uniaxial, check_equal_materials, check_certificates)))
-scenes.end()
+scenes.all_of(globals())

@@ -69,7 +69,6 @@ def column(E, nu, sigma, tau, dimension=2, hypothesis="plane stress"):
 
 def check_columns():
     """The least J is that of the complementary energy, with its sign changed."""
-    scenes.section("Columns")
     for name, more, dimension, hypothesis in (
             ("nodal", [NODAL], 2, "plane stress"), ("gauss", GAUSS, 2, "plane strain"),
             ("degree 2", DEGREE_2, 2, "plane stress"), ("3D", [NODAL], 3, ""),
@@ -117,7 +116,6 @@ def check_columns():
 
 def check_pressed():
     """In contact bonds hold in shear until their energy is spent."""
-    scenes.section("Pressed")
     kn, kt, energy, E, nu = 50., 20., .02, 1000., 0.
     for dimension, more in ((2, [NODAL]), (2, DEGREE_2), (2, GAUSS), (3, [NODAL])):
         tau = (.6, -.3)[:dimension - 1]
@@ -153,7 +151,6 @@ def check_pressed():
 
 def check_layers():
     """Two layers with bonds in series, moved at the top: opening, slip, J and first break."""
-    scenes.section("Layers")
     kn, kt, energy, move = 50., 20., .02, (.5, 1.)
     heights, moduli = (2., 2.), (1000., 2000.)
     across = sum(h / E for h, E in zip(heights, moduli))
@@ -192,7 +189,6 @@ def check_layers():
 
 def check_softening_column():
     """A column without elasticity to speak of: the law itself in the effective opening."""
-    scenes.section("Softening column")
     k, ratio, strength, energy = 100., .4, 1., .02
     first, last = strength / k, 2 * energy / strength
     # Directions of the displacement and effective openings, the last ones on the way back.
@@ -236,7 +232,6 @@ Physical Curve("right") = {4}; Physical Curve("up") = {5};
 def check_oblique():
     """Pulled by sigma along x, the joint at 45 degrees opens by sigma / (2 k_n) and slips by
     sigma / (2 k_t); V3.04.001 of code_aster."""
-    scenes.section("Oblique joint")
     (scenes.directory / "square.geo").write_text(SQUARE)
     E, nu, kn, kt, sigma = 30000., .2, 20., 40., 3.
     law = [f"Young modulus={E!r}", f"Poisson ratio={nu!r}",
@@ -351,7 +346,6 @@ def check_profile(name, result, kn, kt, energy):
 def check_tractions():
     """With Gauss' rule the force of a node is a mean around it; its traction is what the law
     says of the opening and slip there, of an edge in its middle."""
-    scenes.section("Tractions")
     kn, kt = 50., 20.
     rows = solve(*STRIPS, *bonds(kn, kt, 1e3), "Traction end=0.2; 0.1", *DEGREE_2)["profile"]
     check("many", len(rows) > 30)
@@ -377,7 +371,6 @@ def check_tractions():
 
 def check_all_held():
     """Without a contact node J is that of the bonds at vertices that are moved along them."""
-    scenes.section("All held")
     result = solve("Lengths=5, 10", "Cells=5, 1", "Young modulus=100", "Poisson ratio=0",
                    "Clamped boundaries=", "Displacement right=0; -0.01", "Displacement top=0; free",
                    "Displacement bottom=0; free", "Displacement left=free; -0.01",
@@ -388,7 +381,6 @@ def check_all_held():
 
 
 def check_strips():
-    scenes.section("Strips")
     for name, rows in TABLE.items():
         for factor, from_rest, n_from_rest, least, n_least in rows:
             at = f"{name}, {factor}"
@@ -406,7 +398,6 @@ def check_strips():
 
 
 def check_three_strips():
-    scenes.section("Three strips")
     scene = ["Lengths=40, 5", "Cells=10, 5", "Cuts=y = 2, y = 3", "Parts/top_strip=y > 3",
              "Parts/low_strip=y < 2", "Young modulus=500", "Young modulus top_strip=1000",
              "Young modulus low_strip=2000", "Poisson ratio=0.3", "Clamped boundaries=right", NODAL,
@@ -456,7 +447,6 @@ def moved_strips(law, *more, steps=STEPS):
 
 
 def check_paths():
-    scenes.section("Paths")
     for name, (law, totals, dissipated) in PATHS.items():
         smooth = name in ("bilinear", "exponential")
         path = solve(*moved_strips(law, *NO_HEALING))["path"]
@@ -513,7 +503,6 @@ MIXED = {
 
 
 def check_mixed_mode():
-    scenes.section("Mixed mode")
     for (law, mode), rows in MIXED.items():
         k = 500. if (law, mode) == ("bilinear", "benzeggagh-kenane 2") else 100.
         entries = bonds(k, k if k == 500. else .4 * k, .02)
@@ -551,7 +540,6 @@ def check_mixed_mode():
             path = solve(*path_entries, "Displacement factors=0.2")["path"]
             close(f"{mode}, {m}: energy at once", path[-1]["dissipated_energy"] if path else None,
                   2 * energy(m), 1e-4)
-    check_opening()
     # With one energy for all modes it is the law without a mode, also where bonds are a field.
     field = moved_strips([BONDED], *NO_HEALING, steps=(.3, .6, 1.))
     field += ["Bond stiffness=if(x > 4, 50, 0)", "Bond shear stiffness=20", "Fracture energy=0.02"]
@@ -718,7 +706,6 @@ def scaled(entries, L, E):
 def check_nothing_left():
     """Through the unloaded state, and to the end of all bonds: where nothing acts forces are
     rounding, and J is what bonds have taken. In three units."""
-    scenes.section("Nothing left")
     bottom = "Contact boundary=bottom"
     free = "Clamped boundaries="
     cases = {"separate": ["Lengths=12, 1.5", "Cells=3, 2", "Young modulus=2152",
@@ -760,8 +747,4 @@ def check_nothing_left():
                 close(at + ": all is taken", result["path"][-1]["J"], 9 * unit, 1e-9)
 
 
-scenes.together(*((check_.__name__, check_) for check_ in (
-    check_columns, check_pressed, check_layers, check_softening_column, check_tractions,
-    check_all_held, check_oblique, check_strips, check_three_strips, check_paths,
-    check_mixed_mode, check_limits, check_invariances, check_nothing_left)))
-scenes.end()
+scenes.all_of(globals())

@@ -34,7 +34,6 @@ def column(length, modulus, *more):
 
 def check_cracks():
     """The left half of a strip has no bonds and is lifted: laws without an end have its crack."""
-    scenes.section("Cracks")
     for more in (law("exponential", 1e3, 10, 1), ["Law=curve",
                                                    "Curve=0:0, 0.01:10, 0.02:5, 1:5"]):
         result = solve("Lengths=40, 2", "Cells=40, 2", "Young modulus=1e4",
@@ -47,7 +46,6 @@ def check_cracks():
 
 
 def check_column():
-    scenes.section("Column")
     # d, opening, J of the width 2: (d - p)^2 / (2 C) + j_1(p), p = (d - C t) of the line
     # t = (0.04 - p) / 0.03 or t = 100 p; back at t = 20 p.
     expected = [(0.005, 0.005 / 3, 0), (0.02, 1 / 150, 0), (0.035, 0.025, 0.01),
@@ -104,7 +102,6 @@ PATH = {"bilinear": [(0.2, 0.3154258876617, 0.1871095483233), (0.6, 0.8825149347
 
 
 def check_strip():
-    scenes.section("Path of a strip")
     for name, expected in PATH.items():
         path = strip(*law(name, 100, 1, 0.02), NO_HEALING, "Displacement factors="
                      + ", ".join(str(row[0]) for row in expected))["path"]
@@ -126,7 +123,6 @@ def check_strip():
 
 def check_brittle():
     """With a fracture energy of little more than strength^2 / (2 stiffness)."""
-    scenes.section("Brittle limit")
     factors = [NO_HEALING, "Displacement factors=0.2, 0.6, 1, 1.5, 0.5, 2"]
     winkler = strip("Bond stiffness=100", "Bond threshold=0.01", *factors)["path"]
     for part in (1e-3, 1e-6):
@@ -142,7 +138,6 @@ def check_snap_back():
     """A cube of E 0.5 whose bonds are rigid up to 1.1 and then soften (SSNP118 of
     code_aster, V6.03.118): the opening p goes with the traction t = 1.1 (1 - p / p_c), p_c =
     1.8 / 1.1, and the top with p + t / 0.5."""
-    scenes.section("Cube that snaps back")
     p_c = 1.8 / 1.1
     for dimension in (2, 3):
         both = dimension == 3
@@ -172,7 +167,6 @@ def check_snap_back():
 
 def check_proofs():
     """Half of two equal strips: least states by another branch and bound, in Python."""
-    scenes.section("Least states")
     for b, J in ((0.1, 0.1068156398590), (0.3, 0.2275626259770), (0.5, 0.3067896265292),
                  (1, 0.4570378093090), (2, 0.6685556957074)):
         result = strip("Poisson ratio=0", *law("bilinear", 200, 1, 0.01),
@@ -196,7 +190,6 @@ def check_proofs():
 
 def check_double_cantilever():
     """Strong bonds on coarse cells: the crack runs on in snaps."""
-    scenes.section("Double cantilever beam")
     for name in ("bilinear", "exponential"):
         result = solve("Lengths=100, 1.5", "Cells=200, 3",
                        "Hypothesis=plane strain", "Young modulus=126000",
@@ -220,7 +213,6 @@ def check_double_cantilever():
 
 def check_edges():
     """What random scenes have shown to be hard."""
-    scenes.section("Edges")
     # A pad that only bonds of strength 0.1 hold.
     pad = ["Lengths=0.2, 0.1", "Cells=8, 4", "Clamped boundaries=", "Contact boundary=bottom"]
     for name in ("bilinear", "exponential"):
@@ -271,7 +263,6 @@ def check_edges():
 def check_gap():
     """A path begins at rest, where a gap of 0.15 has softened the bonds to the secant of its
     traction 10 (0.2 - 0.15) / 0.19, whichever factors come first."""
-    scenes.section("Gap")
     secant = 10 * .05 / .19 / .15
     for factors in "-0.14", "0, -0.14", "-0.14, -0.1, 0", "0, -0.05, -0.149, -0.14":
         path = solve("Lengths=1, 1", "Cells=1, 1", "Young modulus=1e6", "Poisson ratio=0",
@@ -285,7 +276,6 @@ def check_gap():
 
 def check_units():
     """Rings that softening bonds alone hold: J goes with the cube of the unit of length."""
-    scenes.section("Units")
     results = [solve("Symmetry=axis", f"Constants/u={u!r}", "Lengths=6.6*u, 3.9*u", "Cells=2, 3",
                      "Cuts=y = 1.3*u, y = 2.6*u", "Parts/upper=y > 1.3*u", "Young modulus=55",
                      "Poisson ratio=0.4", "Young modulus upper=3.3", "Poisson ratio upper=0.2",
@@ -299,7 +289,4 @@ def check_units():
         close("J", value, results[0], 1e-9)
 
 
-scenes.together(*((check_.__name__, check_) for check_ in (
-    check_column, check_strip, check_brittle, check_snap_back, check_proofs,
-    check_double_cantilever, check_edges, check_gap, check_units)))
-scenes.end()
+scenes.all_of(globals())
