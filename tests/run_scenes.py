@@ -18,8 +18,8 @@ SECTIONS = {
     "Mesh": "Lengths|Cells|Cuts|Degree|Source|File|Rotation|Generator|Arguments|Refinements|Scale",
     "Material": "Young mod|Poisson ratio|Shear moduli|Axis angle|Thermal expansion|Hypothesis",
     "Load path": "Factors|Displacement factors|Arc|Bonds heal|Global branch|Dead loads",
-    "Contact law": "Law|Quadrature|Tangential|Bond |Fracture|Shear fracture|Mixed mode|Curve|Initial"
-                   "|Traction factor",
+    "Contact law": "Law|Quadrature|Tangential|Bond |Fracture|Shear fracture|Mixed mode|Curve|"
+                   "Initial gap|Traction factor",
     "Boundary conditions": "Clamped|Roller|Contact boundary|Foundation normal|Displacement ",
     "Loads": "Traction |Pressure |Force |Body force|Temperature change",
     "Solver": "Linear solver|Method|Search|Prove"}
@@ -174,8 +174,9 @@ class Scenes:
     def all_of(self, names, *checks):
         """The functions check_... of a module that have no arguments, and others with titles;
         ends the program."""
-        self.together(*((name[6:].replace("_", " "), function) for name, function in names.items()
-                        if name.startswith("check_") and not function.__code__.co_argcount), *checks)
+        own = [(name[6:].replace("_", " "), function) for name, function in names.items()
+               if name.startswith("check_") and not function.__code__.co_argcount]
+        self.together(*own, *checks)
         self.end()
 
     def section(self, title):

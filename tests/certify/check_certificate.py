@@ -161,12 +161,9 @@ def check_prescribed(kind):
     too large for its place, one that is pushed over a gap onto the foundation, and one that
     bonds hold, of equal stiffness but with two thresholds."""
     for name, J, *settings in (
-            ("press fit", 0.005, "Law=none", "Initial gap=-0.01",
-             "Displacement top=free; 0"),
-            ("gap", 0.02, "Law=none", "Initial gap=0.01",
-             "Displacement top=free; -0.03"),
-            ("bonds", 2.5e-5, "Displacement top=free; 0.001",
-             "Bond stiffness=100",
+            ("press fit", 0.005, "Law=none", "Initial gap=-0.01", "Displacement top=free; 0"),
+            ("gap", 0.02, "Law=none", "Initial gap=0.01", "Displacement top=free; -0.03"),
+            ("bonds", 2.5e-5, "Displacement top=free; 0.001", "Bond stiffness=100",
              "Bond threshold=if(x < 0.5, 1, 2)")):
         found = interval("Lengths=1, 1", "Cells=4, 4", "Young modulus=100", "Poisson ratio=0",
                          "Clamped boundaries=", "Roller boundaries=left, right",

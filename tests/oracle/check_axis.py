@@ -6,7 +6,6 @@ frustums (S, g, J, law, displacements, forces, stresses, words, proofs), paths a
 stationary states, domes on a plane, bodies that are glued, refined meshes; and closed forms."""
 import itertools
 import pathlib
-import re
 import shutil
 import sys
 from types import SimpleNamespace

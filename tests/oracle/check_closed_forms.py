@@ -558,11 +558,9 @@ def check_coming_off(dim, L, unit):
              ("without a load", bare, None), ("pressed", [*bare, top(-p)], None),
              ("pressed beyond its end", [*bare, pressed(1.5)], (0.5, turn(1.5), 0.25 * force)),
              ("pressed at its end", [*bare, pressed(0.99999)], None),
-             ("pressed a little beyond", [*bare, pressed(1.001)],
-              (0.5, turn(1.), 0.0005 * force)),
+             ("pressed a little beyond", [*bare, pressed(1.001)], (0.5, turn(1.), 0.0005 * force)),
              ("guided and pressed beyond", [*guided, pressed(1.5)], None),
-             ("guided and lifted at its end", [*guided, right(p)],
-              (1., none, p * height * width)),
+             ("guided and lifted at its end", [*guided, right(p)], (1., none, p * height * width)),
              ("clamped", [*bare, top(p), "Clamped boundaries=right"], None)]
     if dim == 2:
         # The moment about the end on which it would turn is zero.

@@ -26,10 +26,8 @@ FORMATS = {"1": ("msh", "-format msh1", False),
            "4.1 binary": ("msh", "-format msh41 -bin", True),
            "4.1 partitioned": ("msh", "-format msh41 -part 3", True),
            "4.1, second order": ("msh", "-format msh41 -order 2", True),
-           "I-deas": ("unv", "-format unv -setnumber Mesh.SaveGroupsOfNodes 0",
-                      True),
-           "Nastran": ("bdf", "-format bdf -setnumber Mesh.BdfFieldFormat 1",
-                       False),
+           "I-deas": ("unv", "-format unv -setnumber Mesh.SaveGroupsOfNodes 0", True),
+           "Nastran": ("bdf", "-format bdf -setnumber Mesh.BdfFieldFormat 1", False),
            "Inria": ("mesh", "-format mesh", False)}
 PLACES = {"left": "x < 1e-6", "right": "x > 1 - 1e-6", "bottom": "y < 1e-6"}
 

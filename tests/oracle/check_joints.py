@@ -394,8 +394,7 @@ def check_rings():
     for degree, tolerance in ((1, 0.03), (2, 0.003)):
         result = solve(*glued, "Cuts=inner | outer", FREE, *bonds(0, 1.),
                        "Temperature change=-1", "Thermal expansion outer=0.01",
-                       f"Degree={degree}", *(["Quadrature=gauss 3"]
-                                                  if degree == 2 else []))
+                       f"Degree={degree}", *(["Quadrature=gauss 3"] if degree == 2 else []))
 
         def yields(E, inner, outer, is_inner):
             factor = (outer**2 + inner**2) / (outer**2 - inner**2)

@@ -199,8 +199,7 @@ def check_pulled_and_moved(dim):
     entries = [*moved(dim), "Traction bottom=0; 1" + "; 0" * (dim == 3)]
     for name, factors, *others in (
             ("both vary", ", ".join(map(str, pulls)), "Global branch=prove"),
-            ("dead loads", "0", "Dead loads=bottom", "Quadrature=gauss 2",
-             "Global branch=search")):
+            ("dead loads", "0", "Dead loads=bottom", "Quadrature=gauss 2", "Global branch=search")):
         scenes.section(f"Column pulled and moved in {dim}D, {name}")
         path = column(dim, *entries, "Factors=" + factors, *others,
                       "Displacement factors=" + ", ".join(map(str, moves)))["path"]
@@ -232,12 +231,11 @@ def check_without_pressure(dim):
                             f"Traction top=0; {-q}" + "; 0" * (dim == 3)],
              lambda t: -area * (t * q * g + (t * q)**2 * H / (2. * E))),
             ("stretched", ["Displacement factors=0, 1, -1, 2, 0",
-                           f"Displacement right={0.3 * e}; free"
-                           + "; free" * (dim == 3)],
+                           f"Displacement right={0.3 * e}; free" + "; free" * (dim == 3)],
              lambda t: 0.5 * E * (t * e)**2 * volume),
             ("cooled", ["Temperature change=-5", "Factors=0, 1, -1, 2, 0"],
-             lambda t: -E * (t * e)**2 * volume * (
-                 1. / (1. - nu) if dim == 2 else 1.5 / (1. - 2. * nu)))):
+             lambda t: -E * (t * e)**2 * volume * (1. / (1. - nu) if dim == 2
+                                                   else 1.5 / (1. - 2. * nu)))):
         scenes.section(f"Without pressure on the foundation in {dim}D, {name}")
         path = solve(*block, *entries)["path"]
         check("all steps", len(path) == 5 and all(r["status"] == "success" for r in path))
@@ -384,8 +382,7 @@ def check_other_laws():
     for entry, n_steps, message in (
             ("Solver/Majorise minimise/Maximum iterations=2", 6,
              "load path, step 6, factor 2.5: majorise-minimise: relative residual"),
-            ("Verification/Tolerance=1e-300", 2,
-             "load path, step 2, factor 0.5: verification")):
+            ("Verification/Tolerance=1e-300", 2, "load path, step 2, factor 0.5: verification")):
         result = solve(*BENCHMARK, "Factors=0:0.5:4", entry)
         check(entry, len(result["path"]) == n_steps and message in result["errors"],
               result["errors"])

@@ -207,8 +207,7 @@ def check_no_free_vertex(dim, *kind):
     moved = f"={e} * x" + "; 0" * (dim - 1)
     for name, expected, *supports in (
             ("at rest", 0., "Clamped boundaries=base, cut"),
-            ("stretched", energy, "Displacement base" + moved,
-             "Displacement cut" + moved,
+            ("stretched", energy, "Displacement base" + moved, "Displacement cut" + moved,
              "Tangential displacement=free")):
         found = solve(TRIANGLE if dim == 2 else TETRAHEDRON, *HELD, *kind, f"Dimension={dim}",
                       "Body force=2; -1" + "; 0.5" * (dim == 3), *supports)
@@ -225,10 +224,8 @@ scenes.all_of(
     *((f"dome {rough} {extra}", check_dome, rough, *extra) for rough in (0., 0.02, 0.06)
       for extra in (["Tangential displacement=fixed"],
                     ["Tangential displacement=fixed", *QUADRATIC])),
-    *((f"{dim}D, {kind}", check_no_free_vertex, dim, *kind) for dim in (2, 3) for kind in (
-        ["Method=automatic"], ["Method=euclidean bundle"],
-        ["Method=energy bundle"], [MM, "Linear solver=direct"],
-        [MM, "Linear solver=multigrid"], [MM, "Prove=true"],
-        [MM, "Search=full"], [MM, "Factors=0.5, 1"],
-        [MM, "Law=none"],
-        [MM, "Quadrature=gauss 8"] if dim == 2 else QUADRATIC)))
+    *((f"{dim}D, {kind}", check_no_free_vertex, dim, *kind) for dim in (2, 3)
+      for kind in (["Method=automatic"], ["Method=euclidean bundle"], ["Method=energy bundle"],
+                   [MM, "Linear solver=direct"], [MM, "Linear solver=multigrid"],
+                   [MM, "Prove=true"], [MM, "Search=full"], [MM, "Factors=0.5, 1"],
+                   [MM, "Law=none"], [MM, "Quadrature=gauss 8"] if dim == 2 else QUADRATIC)))

@@ -141,8 +141,7 @@ def check_equal_materials():
                        ("multigrid in 3D", [*solid, "Linear solver=multigrid"]),
                        ("certificate", ["Certificate/Kind=global"]),
                        ("heat", ["Thermal expansion=1e-3", "Temperature change=x"]),
-                       ("Euclidean bundle", ["Method=euclidean bundle",
-                                             "Cells=8, 2"])):
+                       ("Euclidean bundle", ["Method=euclidean bundle", "Cells=8, 2"])):
         one, other = (solve(*strip, *more, *of) for of in (isotropic, nine))
         check(name + " arrives", one["status"] == other["status"] == "success")
         compare(name + ", isotropic in nine numbers", one, other,

@@ -223,11 +223,9 @@ def check_edges():
         result = solve(*pad, "Traction top=0; 0.05", *law(name, 100, 0.1, 1e-4))
         check(name + " holds", result["status"] == "success")
     # Softening so steep that single nodes have a negative pivot on the arc.
-    for scene in (["Displacement right=free; 1",
-                   *law("bilinear", 5, 0.1, 0.00105),
+    for scene in (["Displacement right=free; 1", *law("bilinear", 5, 0.1, 0.00105),
                    "Displacement factors=0.02:0.02:0.6"],
-                  ["Traction right=0; 0.5", "Law=curve",
-                   "Curve=0:1, 0.1:0", "Factors=0.1:0.1:1"]):
+                  ["Traction right=0; 0.5", "Law=curve", "Curve=0:1, 0.1:0", "Factors=0.1:0.1:1"]):
         result = solve("Lengths=10, 1", "Cells=6, 1", "Arc=true", "Clamped boundaries=left",
                        "Contact boundary=bottom", *scene)
         check("steep: arc to the end of the interval, without a note",

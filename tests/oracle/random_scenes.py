@@ -10,13 +10,10 @@ import math
 import pathlib
 import random
 import sys
-from types import SimpleNamespace
-
-import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
-from oracle import EXACT, LAW, SUPPORTS, Body, determinant
+from oracle import Body, determinant
 from run_scenes import sawteeth
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))

@@ -47,32 +47,16 @@ fi
 
 # Wherever it comes: a run ends with its results, or without any and says so.
 # Half-written files and locks stay in no case.
-cat >block.prm <<'SCENE'
-set Dimension = 3
-subsection Mesh
-  set Lengths = 3, 1, 2
-  set Cells = 24, 9, 16
-end
-subsection Boundary conditions
-  set Clamped boundaries = left
-  set Contact boundary = bottom
-end
-subsection Loads
-  set Traction top = 0; 0.02; 0
-end
-subsection Contact law
-  set Bond stiffness = 20
-  set Bond threshold = 2e-4
-end
-subsection Solver
-  set Linear solver = direct
-end
-SCENE
+block=("Dimension=3" "Mesh/Lengths=3, 1, 2" "Mesh/Cells=24, 9, 16"
+  "Boundary conditions/Clamped boundaries=left" "Boundary conditions/Contact boundary=bottom"
+  "Loads/Traction top=0; 0.02; 0" "Contact law/Bond stiffness=20"
+  "Contact law/Bond threshold=2e-4" "Solver/Linear solver=direct" "Output/Directory=block")
+: >empty.prm
 has_begun='grep -q debond /proc/$process/comm &&
   grep -q "SigCgt:.*[4-7c-f]...$" /proc/$process/status' # it catches SIGTERM
 for seconds in 0 0.1 0.3 1 2 4 8; do
   signal_when TERM "$has_begun && sleep $seconds" \
-    "$debond" block.prm --set "Output/Directory=block"
+    "$debond" empty.prm "${block[@]/#/--set=}"
   [ $code -eq 0 ] && [ "$seconds" != 0 ] && break # it has ended before
   [ $code -eq 4 ] || fail "exit code $code after $seconds s: $(cat log errors)"
   if [ -e block/summary.json ]; then
@@ -91,34 +75,16 @@ for seconds in 0 0.1 0.3 1 2 4 8; do
 done
 
 # A search (on a finer mesh) and a proof that take minutes say that they run.
-cat >patches.prm <<'SCENE'
-subsection Mesh
-  set Lengths = 1.7, 0.11
-  set Cells = 170, 1
-end
-subsection Material
-  set Young modulus = 1
-  set Poisson ratio = 0.1
-end
-subsection Boundary conditions
-  set Contact boundary = bottom
-  set Clamped boundaries = top
-end
-subsection Loads
-  set Traction bottom = 0; 0.95*sin(16.8*x + 5.65) + 0.35
-end
-subsection Contact law
-  set Tangential displacement = fixed
-  set Bond stiffness = 1400
-  set Bond threshold = 0.007
-end
-SCENE
+patches=("Mesh/Lengths=1.7, 0.11" "Mesh/Cells=170, 1" "Material/Young modulus=1"
+  "Material/Poisson ratio=0.1" "Boundary conditions/Contact boundary=bottom"
+  "Boundary conditions/Clamped boundaries=top" "Contact law/Tangential displacement=fixed"
+  "Loads/Traction bottom=0; 0.95*sin(16.8*x + 5.65) + 0.35" "Contact law/Bond stiffness=1400"
+  "Contact law/Bond threshold=0.007" "Solver/Prove=true" "Output/Directory=long")
 for stage in "search for a lower minimum" proof; do
   settings="Solver/Search=none"
   [ "$stage" = proof ] || settings="Solver/Search=full --set Mesh/Cells=1000,1"
   signal_when INT "grep -q '^  $stage, 2 s' log" \
-    "$debond" patches.prm --set "Output/Directory=long" \
-    --set "Solver/Prove=true" --set $settings
+    "$debond" empty.prm "${patches[@]/#/--set=}" --set $settings
   [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
   grep -q "the search or the proof was interrupted" errors ||
     fail "$(cat errors)"
