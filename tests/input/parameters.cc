@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Variables bound to entries: what is written into them, and what is said of
-// values that are not allowed and of entries without effect.
+// values that are not allowed. Entries without effect are in program/errors.
 #include <debond/base/text.h>
 #include <debond/input/parameters.h>
 
 #include <iostream>
-#include <sstream>
 
 #include "../check.h"
 
@@ -106,101 +105,6 @@ namespace
     for (const std::string &line : table.errors)
       std::cout << line << std::endl;
   }
-
-
-
-  /// What is said of entries that a scene has no use for.
-  void
-  test_entries_without_effect()
-  {
-    const auto print_notes = [](const std::string              &text,
-                                const std::vector<std::string> &assignments) {
-      SceneTable         table;
-      std::istringstream scene(text);
-      table.read(scene, "scene.prm");
-      for (const std::string &assignment : assignments)
-        table.assign(assignment);
-      try
-        {
-          table.evaluate();
-          const Parameters parameters = table.parameters("scene.prm");
-          for (const std::string &note : parameters.notes)
-            std::cout << "  " << note << std::endl;
-          return parameters.effective_scene;
-        }
-      catch (const BadInput &error)
-        {
-          for (const std::string &line : error.lines)
-            std::cout << "  " << line << std::endl;
-          return std::string();
-        }
-    };
-    std::cout << "All defaults, and what a run of them writes" << std::endl;
-    std::ostringstream all;
-    SceneTable().print(all, false);
-    print_notes(print_notes(all.str(), {}), {});
-    for (const std::vector<std::string> &assignments :
-         std::vector<std::vector<std::string>>{
-           {"Contact law/Law=curve",
-            "Contact law/Curve=0:0, 1:1, 2:0",
-            "Contact law/Traction factor=2*x",
-            "Contact law/Bond stiffness=69"},
-           {"Contact law/Law=curve",
-            "Contact law/Curve=0:0, 1:1, 2:0",
-            "Contact law/Bond threshold top=1"},
-           {"Contact law/Law=bilinear",
-            "Contact law/Bond stiffness=100",
-            "Contact law/Bond strength=1",
-            "Contact law/Fracture energy=0.02",
-            "Contact law/Traction factor=x"},
-           {"Contact law/Law=none", "Contact law/Bond stiffness=70"},
-           {"Contact law/Law=none", "Contact law/Traction factor=x"},
-           {"Contact law/Curve=0:0, 1:1"},
-           {"Contact law/Traction factor=1"},
-           {"Boundary conditions/Contact boundary=",
-            "Contact law/Initial gap=0.1",
-            "Contact law/Bond stiffness=7"},
-           {"Dimension=3",
-            "Mesh/Lengths=1, 1, 1",
-            "Mesh/Cells=1, 1, 1",
-            "Material/Hypothesis=plane strain"},
-           {"Mesh/Source=generator",
-            "Mesh/Generator=hyper_cube",
-            "Mesh/Arguments=0 : 1 : true",
-            "Boundary conditions/Clamped boundaries=0",
-            "Boundary conditions/Contact boundary=1",
-            "Mesh/Cells=5, 7"},
-           {"Mesh/Source=generator",
-            "Mesh/Generator=hyper_cube",
-            "Mesh/Arguments=0 : 1 : true",
-            "Boundary conditions/Clamped boundaries=0",
-            "Boundary conditions/Contact boundary=1",
-            "Mesh/Scale=3"},
-           {"Material/Thermal expansion=1e-6"},
-           {"Loads/Temperature change=5"},
-           {"Load path/Bonds heal=false", "Output/Load path body VTU=true"},
-           {"Loads/Body force=0; 1",
-            "Load path/Factors=0:0.1:1",
-            "Load path/Global branch=none",
-            "Solver/Search=full"},
-           {"Solver/Method=energy bundle",
-            "Solver/Euclidean bundle/Bundle size=9",
-            "Solver/Majorise minimise/Stop tolerance=1e-7",
-            "Solver/Proof/Maximum nodes=5"},
-           {"Solver/Method=energy bundle",
-            "Solver/Prove=true",
-            "Solver/Majorise minimise/Stop tolerance=1e-7",
-            "Solver/Proof/Maximum nodes=5"},
-           {"Solver/Method=euclidean bundle",
-            "Solver/Linear solver=direct",
-            "Solver/Energy bundle/Bundle size=9"}})
-      {
-        for (const std::string &assignment : assignments)
-          std::cout << assignment
-                    << (&assignment == &assignments.back() ? "\n" : " | ");
-        print_notes("", assignments);
-      }
-  }
 } // namespace
 
 
@@ -229,6 +133,4 @@ main()
                "Fruit=pear",
                "Members=1",
                "Even=3"});
-  std::cout << "== Entries without effect" << std::endl;
-  test_entries_without_effect();
 }
