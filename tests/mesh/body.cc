@@ -184,25 +184,6 @@ test_curved_side()
 
 
 
-void
-test_errors()
-{
-  std::cout << "Generators that make no body" << std::endl;
-  const auto error = [](const std::string &name, const std::string &arguments) {
-    print_error([&] {
-      BodyParameters parameters;
-      parameters.source    = BodyParameters::Source::generator;
-      parameters.generator = name;
-      parameters.arguments = arguments;
-      make_body<2>(parameters);
-    });
-  };
-  error("hyper_heap", "1");
-  error("hyper_ball", "0, 0 : one : false");
-}
-
-
-
 int
 main(int argc, char **)
 {
@@ -214,5 +195,4 @@ main(int argc, char **)
   // Without numbers of boundaries, which deal.II has in 2D alone.
   test_generated<3>("hyper_L", "-1 : 1 : false");
   test_curved_side();
-  test_errors();
 }
