@@ -14,7 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
-from oracle import LAW, SUPPORTS, Body
+from oracle import LAW, Body
 from random_scenes import Draw
 from run_scenes import NO_PICTURES, Scenes, full_entry, scene_text
 from vtu import Piece
@@ -79,7 +79,7 @@ def random_scene(draw, name):
     entries, mesh = grid(name, n, place)
     E, degree = draw.magnitude(-2., 4.), draw.choice([1, 1, 2])
     s = dict(e.split("=", 1) for e in entries)
-    s.update({"Symmetry": "axis", "Mesh/Degree": str(degree)})
+    s.update({"Symmetry": "axis", "Degree": str(degree)})
     if draw.chance(.3):
         for key, low, high in (("Young moduli", E / 2, 2 * E), ("Poisson ratios", -.1, .3),
                                ("Shear moduli", E / 5, E / 2)):
@@ -91,18 +91,18 @@ def random_scene(draw, name):
     names = draw.shuffled(["bottom", "top", "right"] + ["left"] * (inner > 0.))
     contact = names[:draw.choice([1, 1, 1, 2])]
     tangential = draw.choice(["fixed", "free"])
-    s.update({SUPPORTS + "Contact boundary": ", ".join(contact),
-              SUPPORTS + "Clamped boundaries": "", LAW + "Tangential displacement": tangential})
+    s.update({"Contact boundary": ", ".join(contact),
+              "Clamped boundaries": "", "Tangential displacement": tangential})
     # Where sides meet, they agree on what they prescribe.
     size, kinds = E * draw.magnitude(-4., -2.), ["Clamped", "Roller", "Displacement", "", ""]
     for name in names[len(contact):]:
         kind = draw.choice(kinds)
         kinds = ["Roller", ""] if kind in ("Clamped", "Roller") else [""] if kind else kinds
         if kind == "Displacement":
-            s[f"{SUPPORTS}Displacement {name}"] = vector(
+            s[f"Displacement {name}"] = vector(
                 draw.choice(["free", "0"]), size / E * length * draw.uniform(.3, 1.))
         elif kind:
-            s[f"{SUPPORTS}{kind} boundaries"] = name
+            s[f"{kind} boundaries"] = name
         else:
             load = draw.choice(["Traction", "Pressure", "Force"])
             sign = draw.choice([-1., 1.])
@@ -120,39 +120,38 @@ def random_scene(draw, name):
         for name in contact:
             x, y = tilted(draw, 50.)
             x, y = {"bottom": (x, y), "top": (x, -y), "left": (y, x), "right": (-y, x)}[name]
-            s[f"{SUPPORTS}Foundation normal {name}"] = vector(x, f"{y!r}*(1+{.1 / length!r}*x)")
-    s[LAW + "Quadrature"] = draw.choice(["gauss 2", "gauss 3", "gauss 4"] + [
+            s[f"Foundation normal {name}"] = vector(x, f"{y!r}*(1+{.1 / length!r}*x)")
+    s["Quadrature"] = draw.choice(["gauss 2", "gauss 3", "gauss 4"] + [
         "nodal", "nodal", "nodal", "midpoint"] * (degree == 1))
     k = E / length * draw.magnitude(-1.5, 1.)
-    s[LAW + "Bond stiffness"], s[LAW + "Bond threshold"] = value(k), "1e9"
+    s["Bond stiffness"], s["Bond threshold"] = value(k), "1e9"
     body = body_of([f"{key}={value}" for key, value in s.items()], mesh)
     s0 = body.is_usable and body.minimise([0] * len(body.bonds))
     if s0 is False or s0 is None:
         return None  # nothing holds the body
     M = (float(np.abs(s0).max(initial=0.)) or size / E * length) * draw.uniform(.3, 1.3)
-    s[LAW + "Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
-    if s[LAW + "Law"] == "winkler":
-        s[LAW + "Bond threshold"] = value(M)
-    elif s[LAW + "Law"] == "bilinear":
-        s.update({LAW + "Bond stiffness": repr(k), LAW + "Bond threshold": "",
-                  LAW + "Bond strength": repr(k * M),
-                  LAW + "Fracture energy": repr(k * M * M * draw.uniform(.7, 3.))})
+    s["Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
+    if s["Law"] == "winkler":
+        s["Bond threshold"] = value(M)
+    elif s["Law"] == "bilinear":
+        s.update({"Bond stiffness": repr(k), "Bond threshold": "", "Bond strength": repr(k * M),
+                  "Fracture energy": repr(k * M * M * draw.uniform(.7, 3.))})
     else:
-        s.pop(LAW + "Bond stiffness"), s.pop(LAW + "Bond threshold")
-        if s[LAW + "Law"] == "curve":
-            s[LAW + "Curve"] = ", ".join(f"{p!r}:{t!r}" for p, t in (
+        s.pop("Bond stiffness"), s.pop("Bond threshold")
+        if s["Law"] == "curve":
+            s["Curve"] = ", ".join(f"{p!r}:{t!r}" for p, t in (
                 (0, 0), (M, k * M), (M, k * M / 2), (2 * M, k * M), (2 * M, 0)))
     if draw.chance(.25):
-        s[LAW + "Initial gap"] = value(M)
+        s["Initial gap"] = value(M)
     # What nothing but bonds holds is not for all methods.
     moduli = np.linalg.eigvalsh(body.S) if body.contact_dofs else [1.]
-    s["Solver/Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
+    s["Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
     if moduli[0] < 1e-9 * moduli[-1]:
-        s["Solver/Method"] = "majorise minimise"
-    elif s["Solver/Method"] != "energy bundle":
-        s["Solver/Search"] = draw.choice(["automatic", "none", "full"])
-        s["Solver/Linear solver"] = draw.choice(["direct"] * 4 + ["multigrid"])
-        s["Solver/Prove"] = str(s[LAW + "Quadrature"] == "nodal" and draw.chance(.4)).lower()
+        s["Method"] = "majorise minimise"
+    elif s["Method"] != "energy bundle":
+        s["Search"] = draw.choice(["automatic", "none", "full"])
+        s["Linear solver"] = draw.choice(["direct"] * 4 + ["multigrid"])
+        s["Prove"] = str(s["Quadrature"] == "nodal" and draw.chance(.4)).lower()
     for name in names:
         s[f"Probes/force_{name}"] = "force " + name
     return [f"{key}={value}" for key, value in s.items()], mesh
