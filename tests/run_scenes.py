@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs scenes of which a test writes the entries, and collects what does not hold."""
 import csv
+import inspect
 import json
 import math
 import pathlib
@@ -175,7 +176,7 @@ class Scenes:
         """The functions check_... of a module that have no arguments, and others with titles;
         ends the program."""
         own = [(name[6:].replace("_", " "), function) for name, function in names.items()
-               if name.startswith("check_") and not function.__code__.co_argcount]
+               if name.startswith("check_") and not inspect.signature(function).parameters]
         self.together(*own, *checks)
         self.end()
 
