@@ -14,9 +14,9 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
-from oracle import LAW, Body
-from random_scenes import Draw
-from run_scenes import NO_PICTURES, Scenes, full_entry, scene_text
+from oracle import LAW
+from random_scenes import Draw, body_of, crossed_grid, revolved, tilted, vector
+from run_scenes import NO_PICTURES, Scenes, scene_text
 from vtu import Piece
 
 scenes = Scenes(sys.argv[1])
@@ -27,134 +27,14 @@ DEGREE_2 = ["Degree=2", "Quadrature=gauss 3"]
 MM = "Method=majorise minimise"
 
 
-def body_of(settings, mesh, pairs=()):
-    """In doubles; points, triangles and sides of the mesh."""
-    return Body(dict(full_entry(s).split("=", 1) for s in settings), SimpleNamespace(
-        points=mesh[0], simplices=mesh[1], sides=mesh[2]), float, pairs)
-
-
-def vector(*values):
-    return "; ".join(x if isinstance(x, str) else repr(float(x)) for x in values)
-
-
 def grid(name, n, place):
-    """Writes a crossed grid under a map of the unit square. Returns the entries for it, and its
-    points, triangles and sides."""
-    points, faces, cells = msh.box(n, (1., 1.), crossed=True)
-    points, sides = [place(*p) for p in points], {}
-    for (group,), face in faces:
-        sides.setdefault(msh.SIDES[group - 1], []).append(tuple(face))
-    (scenes.directory / (name + ".msh")).write_text(
-        msh.text(points, faces, [((7,), cell) for _, cell in cells]))
-    return ["Source=file", f"File={name}.msh"], (points, [c for _, c in cells], sides)
-
-
-def tilted(draw, most):
-    """A direction at most so many degrees from downwards."""
-    angle = np.radians(draw.uniform(-most, most) - 90.)
-    return float(3 * np.cos(angle)), float(3 * np.sin(angle))
+    """Writes a crossed grid under a map of the unit square. Returns the entries for it, and it."""
+    mesh = crossed_grid(n, place)
+    (scenes.directory / (name + ".msh")).write_text(mesh.text)
+    return ["Source=file", f"File={name}.msh"], mesh
 
 
 # ------------------------------------------------------------------ random scenes
-
-
-def random_scene(draw, name):
-    """Entries and mesh."""
-    n, inner, length = (draw.between(1, 4), draw.between(1, 3)), draw.choice(
-        [0., 0., draw.uniform(.1, 2.)]), draw.magnitude(-1., 1.)
-    height, shift, wider, tilt = draw.uniform(.3, 1.5), draw.uniform(-1., 1.), draw.choice(
-        [0., draw.uniform(-.4, .8)]), draw.choice([0., draw.uniform(-.3, .3)])
-
-    def place(x, y):
-        if 0 < x < 1 and 0 < y < 1:
-            x, y = x + draw.uniform(-.1, .1) / n[0], y + draw.uniform(-.1, .1) / n[1]
-        return length * (inner + x * (1 + wider * y)), length * (shift + height * y + tilt * x)
-
-    def value(size):
-        """Linear in x or y, or constant."""
-        size *= draw.uniform(.3, 1.)
-        slope = draw.uniform(-.1, .1) / length * draw.below(2)
-        return f"{size!r}*(1 + {slope!r}*{draw.choice('xy')})"
-
-    entries, mesh = grid(name, n, place)
-    E, degree = draw.magnitude(-2., 4.), draw.choice([1, 1, 2])
-    s = dict(e.split("=", 1) for e in entries)
-    s.update({"Symmetry": "axis", "Degree": str(degree)})
-    if draw.chance(.3):
-        for key, low, high in (("Young moduli", E / 2, 2 * E), ("Poisson ratios", -.1, .3),
-                               ("Shear moduli", E / 5, E / 2)):
-            s["Material/" + key] = ", ".join(repr(draw.uniform(low, high)) for _ in range(3))
-        s["Material/Axis angle"], expansion = repr(draw.uniform(-180., 180.)), "1e-3, 2e-3, -5e-4"
-    else:
-        s["Material/Young modulus"], expansion = repr(E), "1e-3"
-        s["Material/Poisson ratio"] = repr(draw.uniform(-.2, .47))
-    names = draw.shuffled(["bottom", "top", "right"] + ["left"] * (inner > 0.))
-    contact = names[:draw.choice([1, 1, 1, 2])]
-    tangential = draw.choice(["fixed", "free"])
-    s.update({"Contact boundary": ", ".join(contact),
-              "Clamped boundaries": "", "Tangential displacement": tangential})
-    # Where sides meet, they agree on what they prescribe.
-    size, kinds = E * draw.magnitude(-4., -2.), ["Clamped", "Roller", "Displacement", "", ""]
-    for name in names[len(contact):]:
-        kind = draw.choice(kinds)
-        kinds = ["Roller", ""] if kind in ("Clamped", "Roller") else [""] if kind else kinds
-        if kind == "Displacement":
-            s[f"Displacement {name}"] = vector(
-                draw.choice(["free", "0"]), size / E * length * draw.uniform(.3, 1.))
-        elif kind:
-            s[f"{kind} boundaries"] = name
-        else:
-            load = draw.choice(["Traction", "Pressure", "Force"])
-            sign = draw.choice([-1., 1.])
-            s[f"Loads/{load} {name}"] = vector(value(size), value(sign * size)) if (
-                load == "Traction") else value(sign * size) if load == "Pressure" else vector(
-                    size * length**2, 2 * sign * size * length**2)
-    if draw.chance(.5):
-        s[f"Loads/Traction {contact[0]}"] = vector(value(size), value(-size))
-    if draw.chance(.3) or not any("Loads" in key for key in s):
-        s["Loads/Body force"] = vector(value(size / length), value(-size / length))
-    if draw.chance(.3):
-        s["Material/Thermal expansion"], s["Loads/Temperature change"] = expansion, value(
-            size / E * 1e3)
-    if draw.chance(.4):
-        for name in contact:
-            x, y = tilted(draw, 50.)
-            x, y = {"bottom": (x, y), "top": (x, -y), "left": (y, x), "right": (-y, x)}[name]
-            s[f"Foundation normal {name}"] = vector(x, f"{y!r}*(1+{.1 / length!r}*x)")
-    s["Quadrature"] = draw.choice(["gauss 2", "gauss 3", "gauss 4"] + [
-        "nodal", "nodal", "nodal", "midpoint"] * (degree == 1))
-    k = E / length * draw.magnitude(-1.5, 1.)
-    s["Bond stiffness"], s["Bond threshold"] = value(k), "1e9"
-    body = body_of([f"{key}={value}" for key, value in s.items()], mesh)
-    s0 = body.is_usable and body.minimise([0] * len(body.bonds))
-    if s0 is False or s0 is None:
-        return None  # nothing holds the body
-    M = (float(np.abs(s0).max(initial=0.)) or size / E * length) * draw.uniform(.3, 1.3)
-    s["Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
-    if s["Law"] == "winkler":
-        s["Bond threshold"] = value(M)
-    elif s["Law"] == "bilinear":
-        s.update({"Bond stiffness": repr(k), "Bond threshold": "", "Bond strength": repr(k * M),
-                  "Fracture energy": repr(k * M * M * draw.uniform(.7, 3.))})
-    else:
-        s.pop("Bond stiffness"), s.pop("Bond threshold")
-        if s["Law"] == "curve":
-            s["Curve"] = ", ".join(f"{p!r}:{t!r}" for p, t in (
-                (0, 0), (M, k * M), (M, k * M / 2), (2 * M, k * M), (2 * M, 0)))
-    if draw.chance(.25):
-        s["Initial gap"] = value(M)
-    # What nothing but bonds holds is not for all methods.
-    moduli = np.linalg.eigvalsh(body.S) if body.contact_dofs else [1.]
-    s["Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
-    if moduli[0] < 1e-9 * moduli[-1]:
-        s["Method"] = "majorise minimise"
-    elif s["Method"] != "energy bundle":
-        s["Search"] = draw.choice(["automatic", "none", "full"])
-        s["Linear solver"] = draw.choice(["direct"] * 4 + ["multigrid"])
-        s["Prove"] = str(s["Quadrature"] == "nodal" and draw.chance(.4)).lower()
-    for name in names:
-        s[f"Probes/force_{name}"] = "force " + name
-    return [f"{key}={value}" for key, value in s.items()], mesh
 
 
 def read_matrix(file):
@@ -236,7 +116,7 @@ def judge(settings, mesh, result, draw):
     loose = 1000. if is_rough else 1.
     s, order = state_of(body, result)
     check("contact nodes", s is not None, result["profile"])
-    if s is None or not len(s) or np.abs(s).max() > np.abs(mesh[0]).max():
+    if s is None or not len(s) or np.abs(s).max() > np.abs(mesh.points).max():
         return
     own = body.S[np.ix_(order, order)]
     if not is_rough:
@@ -283,9 +163,11 @@ def check_random(count=60, first=0):
     drawn = []
     for number in range(first, first + count):
         draw = Draw(number)
-        scene = random_scene(draw, f"random-{number}")
+        scene = revolved(draw)
         if scene:
-            drawn.append((number, draw, *scene))
+            settings, mesh = scene
+            (scenes.directory / f"random-{number}.msh").write_text(mesh.text)
+            drawn.append((number, draw, settings + [f"File=random-{number}.msh"], mesh))
     counts = {}
     for (number, draw, settings, mesh), result in zip(drawn, run(
             [d[0] for d in drawn], [d[2] for d in drawn])):
@@ -434,7 +316,8 @@ def check_cuts():
                     "Clamped boundaries=bottom", "Contact boundary=cut_1",
                     "Traction top=0.2; 0.5*(1+x)", "Bond stiffness=60",
                     "Bond threshold=0.05", MM, "Search=none", *more]
-        body = body_of(settings, (points, triangles, sides), [(up, v) for v, up in upper.items()])
+        body = body_of(settings, SimpleNamespace(points=points, simplices=triangles, sides=sides), [
+            (up, v) for v, up in upper.items()])
         same_J(f"cut, {more}", body, scenes.solve(*settings), [body.descend([0] * len(body.bonds))])
 
 
@@ -458,7 +341,7 @@ def check_refined():
                         if points[a][axis] == points[b][axis] == value]
                  for side, axis, value in (("right", 0, 2.), ("bottom", 1, 0.), ("top", 1, 1.))}
         check("levels", len(result["levels"]) > 1)
-        body = body_of(settings, (points, cells, sides))
+        body = body_of(settings, SimpleNamespace(points=points, simplices=cells, sides=sides))
         same_J("refined", body, result, [body.descend([0] * len(body.bonds))])
 
 

@@ -10,11 +10,14 @@ import math
 import pathlib
 import random
 import sys
+from types import SimpleNamespace
+
+import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import msh
 from oracle import Body, determinant
-from run_scenes import sawteeth
+from run_scenes import full_entry, sawteeth
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 GRID_KINDS = ("L", "step", "notch", "hole")
@@ -574,6 +577,132 @@ def strip(lengths, cells, E, a, M, clamped, loads, law="winkler", tangential="fr
             "Contact law/Bond threshold": str(M), **loads}, Box(lengths, cells)
 
 
+# ------------------------------------------------------------------ bodies of revolution
+
+
+def vector(*values):
+    return "; ".join(x if isinstance(x, str) else repr(float(x)) for x in values)
+
+
+def crossed_grid(n, place):
+    """Under a map of the unit square: a mesh, and the text of its file."""
+    points, faces, cells = msh.box(n, (1., 1.), crossed=True)
+    points, sides = [place(*p) for p in points], {}
+    for (group,), face in faces:
+        sides.setdefault(msh.SIDES[group - 1], []).append(tuple(face))
+    return SimpleNamespace(points=points, simplices=[cell for _, cell in cells], sides=sides,
+                           text=msh.text(points, faces, [((7,), cell) for _, cell in cells]))
+
+
+def body_of(settings, mesh, pairs=()):
+    """In doubles."""
+    return Body(dict(full_entry(s).split("=", 1) for s in settings), mesh, float, pairs)
+
+
+def tilted(draw, most):
+    """A direction at most so many degrees from downwards."""
+    angle = math.radians(draw.uniform(-most, most) - 90.)
+    return 3 * math.cos(angle), 3 * math.sin(angle)
+
+
+def revolved(draw):
+    """Entries and mesh of a box or a frustum; None if nothing holds it."""
+    n, inner, length = (draw.between(1, 4), draw.between(1, 3)), draw.choice(
+        [0., 0., draw.uniform(.1, 2.)]), draw.magnitude(-1., 1.)
+    height, shift, wider, tilt = draw.uniform(.3, 1.5), draw.uniform(-1., 1.), draw.choice(
+        [0., draw.uniform(-.4, .8)]), draw.choice([0., draw.uniform(-.3, .3)])
+
+    def place(x, y):
+        if 0 < x < 1 and 0 < y < 1:
+            x, y = x + draw.uniform(-.1, .1) / n[0], y + draw.uniform(-.1, .1) / n[1]
+        return length * (inner + x * (1 + wider * y)), length * (shift + height * y + tilt * x)
+
+    def value(size):
+        """Linear in x or y, or constant."""
+        size *= draw.uniform(.3, 1.)
+        slope = draw.uniform(-.1, .1) / length * draw.below(2)
+        return f"{size!r}*(1 + {slope!r}*{draw.choice('xy')})"
+
+    mesh = crossed_grid(n, place)
+    E, degree = draw.magnitude(-2., 4.), draw.choice([1, 1, 2])
+    s = {"Symmetry": "axis", "Degree": str(degree), "Source": "file"}
+    if draw.chance(.3):
+        for key, low, high in (("Young moduli", E / 2, 2 * E), ("Poisson ratios", -.1, .3),
+                               ("Shear moduli", E / 5, E / 2)):
+            s["Material/" + key] = ", ".join(repr(draw.uniform(low, high)) for _ in range(3))
+        s["Material/Axis angle"], expansion = repr(draw.uniform(-180., 180.)), "1e-3, 2e-3, -5e-4"
+    else:
+        s["Material/Young modulus"], expansion = repr(E), "1e-3"
+        s["Material/Poisson ratio"] = repr(draw.uniform(-.2, .47))
+    names = draw.shuffled(["bottom", "top", "right"] + ["left"] * (inner > 0.))
+    contact = names[:draw.choice([1, 1, 1, 2])]
+    tangential = draw.choice(["fixed", "free"])
+    s.update({"Contact boundary": ", ".join(contact),
+              "Clamped boundaries": "", "Tangential displacement": tangential})
+    # Where sides meet, they agree on what they prescribe.
+    size, kinds = E * draw.magnitude(-4., -2.), ["Clamped", "Roller", "Displacement", "", ""]
+    for name in names[len(contact):]:
+        kind = draw.choice(kinds)
+        kinds = ["Roller", ""] if kind in ("Clamped", "Roller") else [""] if kind else kinds
+        if kind == "Displacement":
+            s[f"Displacement {name}"] = vector(
+                draw.choice(["free", "0"]), size / E * length * draw.uniform(.3, 1.))
+        elif kind:
+            s[f"{kind} boundaries"] = name
+        else:
+            load = draw.choice(["Traction", "Pressure", "Force"])
+            sign = draw.choice([-1., 1.])
+            s[f"Loads/{load} {name}"] = vector(value(size), value(sign * size)) if (
+                load == "Traction") else value(sign * size) if load == "Pressure" else vector(
+                    size * length**2, 2 * sign * size * length**2)
+    if draw.chance(.5):
+        s[f"Loads/Traction {contact[0]}"] = vector(value(size), value(-size))
+    if draw.chance(.3) or not any("Loads" in key for key in s):
+        s["Loads/Body force"] = vector(value(size / length), value(-size / length))
+    if draw.chance(.3):
+        s["Material/Thermal expansion"], s["Loads/Temperature change"] = expansion, value(
+            size / E * 1e3)
+    if draw.chance(.4):
+        for name in contact:
+            x, y = tilted(draw, 50.)
+            x, y = {"bottom": (x, y), "top": (x, -y), "left": (y, x), "right": (-y, x)}[name]
+            s[f"Foundation normal {name}"] = vector(x, f"{y!r}*(1+{.1 / length!r}*x)")
+    s["Quadrature"] = draw.choice(["gauss 2", "gauss 3", "gauss 4"] + [
+        "nodal", "nodal", "nodal", "midpoint"] * (degree == 1))
+    k = E / length * draw.magnitude(-1.5, 1.)
+    s["Bond stiffness"], s["Bond threshold"] = value(k), "1e9"
+    body = body_of([f"{key}={value}" for key, value in s.items()], mesh)
+    s0 = body.is_usable and body.minimise([0] * len(body.bonds))
+    if s0 is False or s0 is None:
+        return None
+    M = (float(np.abs(s0).max(initial=0.)) or size / E * length) * draw.uniform(.3, 1.3)
+    s["Law"] = draw.choice(["winkler"] * 4 + ["curve", "bilinear", "none"])
+    if s["Law"] == "winkler":
+        s["Bond threshold"] = value(M)
+    elif s["Law"] == "bilinear":
+        s.update({"Bond stiffness": repr(k), "Bond threshold": "", "Bond strength": repr(k * M),
+                  "Fracture energy": repr(k * M * M * draw.uniform(.7, 3.))})
+    else:
+        s.pop("Bond stiffness"), s.pop("Bond threshold")
+        if s["Law"] == "curve":
+            s["Curve"] = ", ".join(f"{p!r}:{t!r}" for p, t in (
+                (0, 0), (M, k * M), (M, k * M / 2), (2 * M, k * M), (2 * M, 0)))
+    if draw.chance(.25):
+        s["Initial gap"] = value(M)
+    # What nothing but bonds holds is not for all methods.
+    moduli = np.linalg.eigvalsh(body.S) if body.contact_dofs else [1.]
+    s["Method"] = draw.choice(["automatic", "majorise minimise", "energy bundle"])
+    if moduli[0] < 1e-9 * moduli[-1]:
+        s["Method"] = "majorise minimise"
+    elif s["Method"] != "energy bundle":
+        s["Search"] = draw.choice(["automatic", "none", "full"])
+        s["Linear solver"] = draw.choice(["direct"] * 4 + ["multigrid"])
+        s["Prove"] = str(s["Quadrature"] == "nodal" and draw.chance(.4)).lower()
+    for name in names:
+        s[f"Probes/force_{name}"] = "force " + name
+    return [f"{key}={value}" for key, value in s.items()], mesh
+
+
 # ---------------------------------------- entries of scenes without an oracle
 
 
@@ -597,16 +726,16 @@ def patched_scene(draw):
     height = length * draw.magnitude(-1.6, -0.6)
     clamped = {"strip": "left", "pad": "top"}.get(kind, "left, right")
     loaded, load = "bottom" if kind == "pad" else "top", waves(draw, length)
-    scene = [f"Material/Poisson ratio={draw.uniform(0., 0.45)}", "Material/Young modulus=1",
-             "Boundary conditions/Clamped boundaries=" + clamped, "Solver/Method=automatic",
-             "Contact law/Tangential displacement=" + draw.choice(["fixed", "free"])]
+    scene = [f"Poisson ratio={draw.uniform(0., 0.45)}", "Young modulus=1",
+             "Clamped boundaries=" + clamped, "Method=automatic",
+             "Tangential displacement=" + draw.choice(["fixed", "free"])]
     if kind == "plate":
         return scene + [
-            "Dimension=3", f"Mesh/Lengths={length}, {height}, {length * draw.uniform(0.2, 0.6)}",
-            f"Mesh/Cells={draw.between(8, 14)}, 1, {draw.between(3, 6)}",
-            f"Loads/Traction {loaded}=0; ({load})*(1+{draw.uniform(-0.8, 0.8)}*z); 0"], height
-    return scene + [f"Mesh/Lengths={length}, {height}", f"Loads/Traction {loaded}=0; {load}",
-                    f"Mesh/Cells={draw.between(40, 140)}, {draw.between(1, 4)}"], height
+            "Dimension=3", f"Lengths={length}, {height}, {length * draw.uniform(0.2, 0.6)}",
+            f"Cells={draw.between(8, 14)}, 1, {draw.between(3, 6)}",
+            f"Traction {loaded}=0; ({load})*(1+{draw.uniform(-0.8, 0.8)}*z); 0"], height
+    return scene + [f"Lengths={length}, {height}", f"Traction {loaded}=0; {load}",
+                    f"Cells={draw.between(40, 140)}, {draw.between(1, 4)}"], height
 
 
 def geometry(dim, draw):
