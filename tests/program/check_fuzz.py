@@ -144,6 +144,7 @@ def is_small(lines):
     """As far as the text says."""
     text = "\n".join(lines)
     size = 6 if re.search(r"Dimension *= *3", text) else 4
+    size *= 4 if re.search(r"Degree *= *2", text) else 1
     for cells in re.findall(r"Cells *= *(.*)", text)[-1:]:
         for n in re.findall(r"\d+", cells):
             size *= int(n) + 1
