@@ -125,6 +125,12 @@ namespace Debond
       load_path.displacement_factors,
       "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads");
     table.bind(
+      "Load path/Resolve",
+      load_path.resolve,
+      number("from 0 to 0.5",
+             [](const double x) { return x >= 0. && x <= 0.5; }),
+      "The part of the largest force to which that is found on a path with Displacement factors alone: between two factors the force may rise further than at both of them before bonds break, and where it may, the step is halved until it is known. The steps of the path stay as they are; 0 leaves it to them");
+    table.bind(
       "Load path/Dead loads",
       load_path.dead_loads,
       "What stays as it is whatever the factor: names of boundaries with a traction, body force, or temperature change");

@@ -542,6 +542,45 @@ namespace Debond
 
 
 
+    /// The largest force of the path and the reactions there; null without one.
+    template <int dim>
+    void
+    report_peak(const std::optional<LoadPathPeak<dim>> &peak, Record &record)
+    {
+      if (!peak)
+        {
+          record.add("/load_path/peak", nullptr);
+          return;
+        }
+      const LoadPathState<dim> &state = peak->step.state;
+      // The work of the supports for a unit of the factor is their force if
+      // they prescribe a displacement of 1 at the factor 1.
+      record.add("/load_path/peak",
+                 {{"unit_displacement_work", state.unit_displacement_work},
+                  {"factor", peak->step.factor},
+                  {"displacement_factor", peak->step.displacement_factor},
+                  {"known_to", peak->known_to},
+                  {"reactions", Json::object()}});
+      record.line("largest force",
+                  scientific(state.unit_displacement_work, 4),
+                  " as work for a unit of the displacement factor, at ",
+                  peak->step.displacement_factor,
+                  ", known to ",
+                  bound(peak->known_to));
+      const std::string prefix = "reaction_";
+      for (const auto &[name, force] : state.vectors)
+        if (name.rfind(prefix, 0) == 0)
+          {
+            const std::string support = name.substr(prefix.size());
+            report_vector("/load_path/peak/reactions/" + support,
+                          "  of " + support,
+                          force,
+                          record);
+          }
+    }
+
+
+
     /// Reports what became of the factors of a load path, and its curve of
     /// stationary states.
     template <int dim>
@@ -562,6 +601,7 @@ namespace Debond
                     result.solution.comes_off_at,
                     load_path,
                     record);
+      report_peak(result.peak, record);
       report_arc(result.arc, load_path, record);
 
       double size = 0.;

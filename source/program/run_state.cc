@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 7, checksum " +
+      return "Debond run state 8, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -104,6 +104,26 @@ namespace Debond
 
 
 
+    template <class Archive>
+    void
+    exchange(Archive &archive, BondMemory &memory)
+    {
+      archive &memory.reached &memory.toughness &memory.mixity &memory
+        .taken                                                 &memory.lag;
+    }
+
+
+
+    template <class Archive>
+    void
+    exchange(Archive &archive, UnresolvedStep &step)
+    {
+      archive &step.first &step.bound &step.u;
+      exchange(archive, step.memory);
+    }
+
+
+
     template <class Archive, typename T>
     void
     exchange(Archive &archive, std::vector<T> &list)
@@ -121,14 +141,15 @@ namespace Debond
     void
     exchange(Archive &archive, RunState<dim> &state)
     {
-      BondMemory &memory = state.path.memory;
+      PathProgress<dim> &path = state.path;
       archive &state.scene &state.mesh &state.meshes.divisions &state.meshes
-        .is_last &state.meshes.shortfall &state.path.kinds &memory
-        .reached &memory.toughness &memory.mixity &memory.taken &memory
-        .lag &state.meshes.start &state.path.u;
+        .is_last &state.meshes.shortfall &path.kinds &state.meshes.start &path
+        .u &path.stiffness;
       exchange(archive, state.meshes.levels);
-      exchange(archive, state.path.steps);
-      exchange(archive, state.path.points);
+      exchange(archive, path.steps);
+      exchange(archive, path.points);
+      exchange(archive, path.memory);
+      exchange(archive, path.unresolved);
     }
 
 

@@ -60,6 +60,10 @@ namespace Debond
     std::string
     name(const LoadFactors &factors) const;
 
+    /// The part of the largest force to which that is sought inside of steps of
+    /// prescribed displacements; 0 for the steps alone.
+    double resolve = 0.01;
+
     GlobalBranch global_branch = GlobalBranch::automatic;
 
     /// Asks for the unstable states between those that the path leads to.

@@ -9,6 +9,32 @@
 
 namespace Debond
 {
+  /// A step inside of which the force may be larger than at both of its ends,
+  /// with what it started from.
+  struct UnresolvedStep
+  {
+    unsigned int first; ///< the number of the step before, from 0
+    double       bound; ///< of the force
+    DofVector    u;
+    BondMemory   memory;
+  };
+
+
+
+  /// The largest force of a load path that moves supports.
+  template <int dim>
+  struct LoadPathPeak
+  {
+    /// Where it is. The force is LoadPathState::unit_displacement_work.
+    LoadPathStep<dim> step;
+
+    /// It may be larger by this part of itself, between the steps that were
+    /// done.
+    double known_to;
+  };
+
+
+
   /// The states that a load path has led to.
   template <int dim>
   struct PathProgress
@@ -22,6 +48,11 @@ namespace Debond
     /// After the last step.
     DofVector  u;
     BondMemory memory;
+
+    /// The largest increase of the force by the displacement factor so far, and
+    /// the steps to be looked into for its largest value.
+    double                      stiffness = 0.;
+    std::vector<UnresolvedStep> unresolved;
   };
 
 
@@ -61,6 +92,9 @@ namespace Debond
     MeshProgress                   meshes; ///< without levels on a given mesh
     PathProgress<dim>              path;   ///< of a single load without steps
     std::vector<LoadPathStep<dim>> arc;
+
+    /// There is one if supports move and the loads stay.
+    std::optional<LoadPathPeak<dim>> peak;
 
     /// The bonds as the path has left them, with references to the scene; null
     /// without steps.

@@ -26,6 +26,12 @@ namespace Debond
     /// operations.
     constexpr double least_of_step = 1e7, of_step = 4000.;
 
+    /// A step is halved so often for the largest force.
+    constexpr unsigned int most_halvings = 10;
+
+    /// The part of a step that tells the stiffness at its beginning.
+    constexpr double part_for_stiffness = 1e-3;
+
 
 
     /// The table of a path in the log: the factors that vary, J, a number and
@@ -123,6 +129,7 @@ namespace Debond
         , scene(*answer.scene)
         , table(parameters, out)
       {
+        alone.resolve = 0.;
         if (!steps.empty())
           return;
         // A path remembers from step to step the displacement, from which the
@@ -167,6 +174,8 @@ namespace Debond
                        observer))
               break;
             table.row(steps.back());
+            if (steps.size() == 1 && seeks_peak())
+              probe_stiffness();
           }
         result.parts["followed path"] += timer.wall_time();
         // What bonds take may depend on the mode in which they break. If it
@@ -302,6 +311,35 @@ namespace Debond
         answer.arc          = arc.steps;
       }
 
+      /// The largest force at a step, or inside of one.
+      void
+      find_peak()
+      {
+        if (!seeks_peak())
+          return;
+        const dealii::Timer timer;
+        Peak                peak = {steps[0], 0.};
+        for (const LoadPathStep<dim> &step : steps)
+          if (force(step) > force(peak.step))
+            peak.step = step;
+        // Bonds depend on what was before, so that a step is done again from
+        // where it began, with the memory that bonds had then.
+        for (const UnresolvedStep &begun : progress.unresolved)
+          if (begun.bound > (1. + parameters.resolve) * force(peak.step) &&
+              begun.first + 1 < steps.size() && !interruption.requested())
+            {
+              PathFollower inside    = from(begun.first, begun.u, begun.memory);
+              const LoadFactors last = steps[begun.first + 1].factors();
+              if (inside.walk(middle(steps[begun.first].factors(), last),
+                              parameters.resolve,
+                              most_halvings,
+                              peak))
+                inside.walk(last, parameters.resolve, most_halvings, peak);
+            }
+        answer.peak          = peak;
+        result.parts["peak"] = timer.wall_time();
+      }
+
       /// What is found, with the numbers of the last factor. The state's word
       /// may come from the global branch.
       Answer<dim>
@@ -325,6 +363,148 @@ namespace Debond
       }
 
     private:
+      using Peak = LoadPathPeak<dim>;
+
+      /// The force that belongs to the displacement factor, whatever its sign.
+      static double
+      force(const LoadPathStep<dim> &step)
+      {
+        return std::abs(step.state.unit_displacement_work);
+      }
+
+      /// A force that grows with the stiffness from the state @p before may
+      /// become this on the way to @p last. On the way back it becomes smaller
+      /// first.
+      double
+      bound_of_force(const LoadPathStep<dim> &before,
+                     const LoadFactors        last) const
+      {
+        const double way = last.displacements - before.displacement_factor;
+        return (way < 0. ? -1. : 1.) * before.state.unit_displacement_work +
+               progress.stiffness * std::abs(way);
+      }
+
+      static LoadFactors
+      middle(const LoadFactors first, const LoadFactors last)
+      {
+        return {0.5 * (first.loads + last.loads),
+                0.5 * (first.displacements + last.displacements)};
+      }
+
+      /// Bonds that heal have another largest force on each way.
+      bool
+      seeks_peak() const
+      {
+        return parameters.resolve > 0. && parameters.moves_only() &&
+               !steps.empty();
+      }
+
+      /// A path of its own from a step of this one, by the same solver.
+      PathFollower
+      from(const unsigned int step,
+           const DofVector   &u,
+           const BondMemory  &memory)
+      {
+        make_solver();
+        Answer<dim> begun;
+        begun.scene          = answer.scene;
+        begun.choice         = answer.choice;
+        begun.path.steps     = {steps[step]};
+        begun.path.points    = {points[step]};
+        begun.path.kinds     = {kinds[step]};
+        begun.path.u         = u;
+        begun.path.memory    = memory;
+        begun.path.stiffness = progress.stiffness;
+        PathFollower inside(alone, settings, std::move(begun), nullptr);
+        inside.solver = solver;
+        solver->start_from(u);
+        return inside;
+      }
+
+      /// The stiffness at the first factor, before bonds break.
+      void
+      probe_stiffness()
+      {
+        if (parameters.factors.size() < 2)
+          return;
+        const LoadFactors first = steps[0].factors(), next = parameters.at(1);
+        LoadFactors       near = first;
+        near.displacements +=
+          part_for_stiffness * (next.displacements - first.displacements);
+        PathFollower inside = from(0, progress.u, progress.memory);
+        if (inside.solve(near, [](const auto &, const auto &) {}))
+          progress.stiffness = inside.stiffness_of_last_step();
+        solver->start_from(progress.u);
+      }
+
+      /// The larger one of that so far and of the last step.
+      double
+      stiffness_of_last_step() const
+      {
+        const LoadPathStep<dim> &now    = steps.back();
+        const LoadPathStep<dim> &before = steps[steps.size() - 2];
+        const double way = now.displacement_factor - before.displacement_factor;
+        return way == 0. ? progress.stiffness :
+                           std::max(progress.stiffness,
+                                    (now.state.unit_displacement_work -
+                                     before.state.unit_displacement_work) /
+                                      way);
+      }
+
+      /// Keeps what the last step started from, if the force may have been
+      /// larger inside of it than at all steps so far.
+      void
+      keep_if_unresolved(UnresolvedStep begun)
+      {
+        progress.stiffness = stiffness_of_last_step();
+        double largest     = 0.;
+        for (const LoadPathStep<dim> &step : steps)
+          largest = std::max(largest, force(step));
+        begun.bound =
+          bound_of_force(steps[begun.first], steps.back().factors());
+        progress.unresolved.push_back(std::move(begun));
+        progress.unresolved.erase(
+          std::remove_if(progress.unresolved.begin(),
+                         progress.unresolved.end(),
+                         [&](const UnresolvedStep &step) {
+                           return step.bound <=
+                                  (1. + parameters.resolve) * largest;
+                         }),
+          progress.unresolved.end());
+      }
+
+      /// Goes to @p last in steps that are halved as long as the force inside
+      /// of one may be larger than that of the @p peak by more than the part @p
+      /// resolve of it. Returns whether there is a state.
+      bool
+      walk(const LoadFactors  last,
+           const double       resolve,
+           const unsigned int halvings,
+           Peak              &peak)
+      {
+        const PathProgress<dim> begun = progress;
+        const bool has_state = solve(last, [](const auto &, const auto &) {}) &&
+                               steps.back().message.empty();
+        if (has_state)
+          {
+            progress.stiffness = stiffness_of_last_step();
+            if (force(steps.back()) > force(peak.step))
+              peak.step = steps.back();
+          }
+        const double excess =
+          bound_of_force(begun.steps.back(), last) / force(peak.step) - 1.;
+        if (halvings == 0 || excess <= resolve || interruption.requested())
+          {
+            peak.known_to = std::max(peak.known_to, excess);
+            return has_state;
+          }
+        const LoadFactors half = middle(begun.steps.back().factors(), last);
+        progress               = begun;
+        solver->start_from(progress.u);
+        return walk(half, resolve, halvings - 1, peak) &&
+               walk(last, resolve, halvings - 1, peak);
+      }
+
       /// Made when it is needed: not if all steps are done, and there is no
       /// more to do.
       void
@@ -478,6 +658,12 @@ namespace Debond
                                    interruption);
         // The order matters: the displacement is refined before bonds break for
         // good by it, and the verification is of the bonds as they are then.
+        std::optional<UnresolvedStep> begun;
+        if (seeks_peak())
+          begun = {static_cast<unsigned int>(steps.size() - 1),
+                   0.,
+                   progress.u,
+                   progress.memory};
         progress.u = solver->displacement();
         refine(bonds, factors, *solver->correction(), progress.u);
         points.push_back(solver->point());
@@ -502,6 +688,8 @@ namespace Debond
                                             at_step ? &*at_step : nullptr));
         judge(minimum, state.verification, step);
         steps.push_back(step);
+        if (begun)
+          keep_if_unresolved(std::move(*begun));
         tell(bonds, state.verification, observer);
       }
 
@@ -654,7 +842,8 @@ namespace Debond
       const Scene<dim>               &scene;
       const PathTable<dim>            table;
       const Interruption             &interruption = Interruption::by_signal();
-      std::unique_ptr<ContactSolver<dim>> solver; ///< see make_solver()
+      LoadPathParameters              alone;      ///< for paths inside of steps
+      std::shared_ptr<ContactSolver<dim>> solver; ///< see make_solver()
     };
   } // namespace
 
@@ -670,6 +859,7 @@ namespace Debond
   {
     PathFollower<dim> path(parameters, settings, std::move(begun), out);
     path.follow(observer);
+    path.find_peak();
     // The order matters: first the followed path, whose states the branch
     // begins with. A path that has failed has neither branch nor arc.
     const bool wants_branch = parameters.global_branch != GlobalBranch::none;
