@@ -25,6 +25,9 @@ namespace Debond
              const Scene<dim>  &scene,
              const DofVector   &u)
     {
+      // An expression may be finite at some points and not at others. What is
+      // thrown at a quadrature point of the mesh names the entry, since the
+      // scene is to be corrected there.
       if (exact_displacement.empty())
         return {};
       try
@@ -52,6 +55,10 @@ namespace Debond
     std::string
     verification_message(const double tolerance, const RunResult<dim> &result)
     {
+      // Of a load path the first step with a message counts, since all later
+      // steps started from it. Comparisons are written so that NaN fails them.
+      // The argument of failure() says whether a smaller stop tolerance can
+      // help, which the message then recommends: only if the method iterates.
       for (const LoadPathStep<dim> &step : result.path.steps)
         if (!step.message.empty())
           return step.message;
@@ -139,6 +146,9 @@ namespace Debond
     bool
     has_load(const Scene<dim> &scene, const double largest_displacement)
     {
+      // Without a load the body stays at rest and its displacement is zero but
+      // for rounding. Neither an estimate nor an error relative to J means
+      // anything then.
       const ElasticProblem<dim> &problem = scene.problem();
       const double               largest_force =
         problem.fields().applied_nodal_forces().linfty_norm();
@@ -158,6 +168,10 @@ namespace Debond
     void
     estimate(RunResult<dim> &result)
     {
+      // The estimate evaluates loads and bonds at points of the faces at which
+      // the solution did not need them. An expression without a value there
+      // takes away the estimate and not the result, therefore it becomes a
+      // note.
       const Scene<dim> &scene = *result.scene;
       try
         {
@@ -173,6 +187,8 @@ namespace Debond
             result.notes.push_back(
               "the mesh is too coarse for J: see error of the mesh");
           const double factor = result.estimate->factor.value_or(1.);
+          // If the mesh before has no factor, that of the last mesh is the
+          // first one that was measured, by two meshes alone.
           if (factor > reliable_factor &&
               !result.meshes.levels.rbegin()[1].error_factor)
             {
@@ -184,6 +200,9 @@ namespace Debond
                       "Accuracy/Maximum unknowns, tells more";
               result.notes.push_back(note.str());
             }
+          // On a single mesh with linear displacements all contact nodes are
+          // vertices of the first mesh. Refinement and quadratic displacements
+          // add nodes on the flat sides, which have the normals of these.
           if ((!result.meshes.levels.empty() ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))
@@ -236,6 +255,9 @@ namespace Debond
     void
     add_notes(const bool is_loaded, RunResult<dim> &result)
     {
+      // These notes tell of scenes that are solved as they are, but hardly mean
+      // what their author wanted. They are no errors, because each of them can
+      // be intended.
       const Scene<dim> &scene = *result.scene;
       if (!is_loaded)
         result.notes.push_back("the scene has no load");
@@ -260,6 +282,8 @@ namespace Debond
                            scene.supports().normals.empty() &&
                              is_curved(scene.contact_boundary())),
              result.notes);
+      // The mesh has to be fine enough for the front in each step, so that the
+      // largest size of a path counts.
       double cell_size_at_edge = 0.;
       for (const LoadPathStep<dim> &step : result.path.steps)
         cell_size_at_edge =
@@ -280,6 +304,9 @@ namespace Debond
                const std::vector<std::string> &notes,
                RunResult<dim>                 &result)
   {
+    // The notes come from the method, from the search and the proof, from the
+    // reading of the scene and from its making, in this order; those of the
+    // functions below follow.
     const Scene<dim>  &scene     = *result.scene;
     const std::string &shortfall = result.meshes.shortfall;
     result.notes                 = result.solution.notes;
@@ -287,6 +314,9 @@ namespace Debond
     append(notes, result.notes);
     append(scene.notes(), result.notes);
     const std::string not_off = check_coming_off(result);
+    // A body that detaches at once has no displacement that could be verified.
+    // On a load path the steps before it have one, and what follows is about
+    // the last of them.
     if (result.solution.status == SolverStatus::comes_off &&
         result.path.steps.empty())
       {
@@ -351,6 +381,8 @@ namespace Debond
   check_exact_displacement(const std::string &exact_displacement,
                            const Scene<dim>  &scene)
   {
+    // The error is computed for the displacement 0 and thrown away. This
+    // evaluates the expression at the same points as after the solve.
     error_of(exact_displacement,
              scene,
              DofVector(scene.problem().unknowns().n_dofs()));

@@ -47,6 +47,10 @@ namespace Debond
     po::options_description
     visible_options()
     {
+      // These are the texts of --help; parse() adds the scenes, which have no
+      // name there. The JSON form of --print-parameters is an option of its
+      // own, whose name contains the '='. The empty comments keep each option
+      // on lines of its own.
       po::options_description options("Options");
       options.add_options()                              //
         ("help", "print this text")                      //
@@ -76,6 +80,8 @@ namespace Debond
           const char *const              argv[],
           const po::options_description &visible)
     {
+      // All words without a dash in front of them are scenes, as many as there
+      // are and in their order.
       po::options_description all;
       all.add(visible);
       all.add_options()("scene", po::value<std::vector<std::string>>());
@@ -85,6 +91,8 @@ namespace Debond
       // Abbreviations would make every new option a breaking change.
       const int style = po::command_line_style::default_style &
                         ~po::command_line_style::allow_guessing;
+      // A study is a scene for another program. Boost's message would only say
+      // that it does not know the option.
       if (argc > 1 && std::string(argv[1]) == "--study")
         throw BadInput({"studies are run by scripts/study STUDY.prm"});
       try
@@ -154,6 +162,9 @@ namespace Debond
                const std::vector<std::string> &assignments,
                SceneTable                     &table)
     {
+      // Assignments come after the file, so that they replace what it says.
+      // Values are taken at the end: expressions may use constants that stand
+      // further down or in an assignment.
       if (!scene.empty())
         read_scene(scene, table);
       for (const std::string &assignment : assignments)
@@ -172,13 +183,20 @@ namespace Debond
                   SignalWatch        &watch,
                   Directories        &directories)
     {
+      // A table and a companion of its own keep what one scene says from the
+      // next one. From begin_run() on a signal belongs to this scene, which has
+      // no result yet. That comes before parameters(), which makes the body and
+      // may take long; whether progress may be printed is known by then.
       const std::unique_ptr<Companion> companion = options.make_companion();
       SceneTable                       table(companion.get());
       read_table(scene, options.assignments, table);
       watch.begin_run(!table.has_machine_details());
       const Parameters parameters = table.parameters(scene);
 
-      // Two names may mean one directory.
+      // Two names may mean one directory, by a link or a detour, therefore
+      // canonical names are compared. The second scene would replace the
+      // results of the first one. It is refused before anything is written; to
+      // validate both is harmless.
       const auto [other, is_new] = directories.emplace(
         std::filesystem::weakly_canonical(
           std::filesystem::absolute(parameters.output.directory)),
@@ -201,6 +219,11 @@ namespace Debond
     ExitCode
     guard(const std::function<ExitCode()> &action)
     {
+      // An exception of any other kind than the three below is a fault of the
+      // program. Matrices that are not positive definite and too little memory
+      // count as bad input: another scene, or the same with fewer cells, can be
+      // solved by the same program. A message of several lines, one for each
+      // error of a scene, is printed line by line.
       ExitCode                 code = ExitCode::internal_error;
       std::vector<std::string> lines;
       bool                     is_own = true;
@@ -229,8 +252,11 @@ namespace Debond
           is_own = dynamic_cast<const ErrorElsewhere *>(&error) == nullptr;
           lines  = {std::string("internal error: ") + error.what()};
         }
-      // If all ranks have thrown, one of them prints. If only some have, the
-      // others wait for a message that never comes, so that all are ended.
+      // If all ranks have thrown, the first one with an error of its own
+      // prints, and all return its exit code. If only some have, the others
+      // wait for a message that never comes. end_together() notices that after
+      // some seconds and has no value; then this rank prints what it knows and
+      // ends all of them.
       const std::optional<EndOfRanks> end =
         end_together(is_own, static_cast<int>(code));
       if (!end || end->is_speaker)
@@ -255,6 +281,9 @@ namespace Debond
       std::vector<ExitCode> codes;
       for (const std::string &scene : scenes)
         {
+          // After a signal the remaining scenes are not begun, and count as
+          // interrupted. requested() agrees with the other ranks, so that all
+          // of them skip the same scenes.
           if (scenes.size() > 1)
             std::cout << (codes.empty() ? "" : "\n") << "== " << scene
                       << std::endl;
@@ -290,6 +319,8 @@ namespace Debond
             const MakeCompanion &make_companion,
             SignalWatch         &watch)
     {
+      // What ends without a scene comes first: whoever asks for help gets it
+      // whatever else is on the line, as long as the line can be parsed.
       const po::options_description visible = visible_options();
       const po::variables_map       values  = parse(argc, argv, visible);
       if (values.count("help") > 0)
@@ -314,6 +345,10 @@ namespace Debond
       options.validate = values.count("validate") > 0;
       options.restart  = values.count("restart") > 0;
 
+      // The table is read as for a run, but parameters() is not called: no mesh
+      // is made, and entries are checked one by one and not against each other.
+      // A table with errors is not printed, since a rejected entry has its
+      // default there and the print would not be what the scene says.
       const bool as_json = values.count("print-parameters=json") > 0;
       if (values.count("print-parameters") > 0 || as_json)
         {
@@ -334,6 +369,9 @@ namespace Debond
         }
       if (scenes.empty())
         throw BadInput({"no scene is given; see debond --help"});
+      // An assignment without --set in front of it counts as the name of a
+      // scene. That such a file does not exist is true, but does not say what
+      // is wrong.
       for (const std::string &scene : scenes)
         if (scene.find('=') != std::string::npos &&
             !std::filesystem::exists(scene))
@@ -354,6 +392,10 @@ namespace Debond
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
+    // Signals are watched before MPI starts, since libraries that start with it
+    // install handlers of their own and start_mpi() restores those that it
+    // finds. A process that was started alone does without MPI until a solver
+    // needs it.
     SignalWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
     if (n_started_ranks() > 1)
       start_mpi();
@@ -361,6 +403,9 @@ namespace Debond
     // that takes nothing.
     if (!is_first_rank())
       std::cout.setstate(std::ios::failbit);
+    // This guard is for errors of the command line. In execute_scenes() each
+    // scene has one of its own, so that an error there does not keep the next
+    // scene from being solved.
     const ExitCode code =
       guard([&]() { return execute(argc, argv, make_companion, watch); });
     end_mpi();

@@ -25,6 +25,8 @@ namespace Debond
     RunState<dim>
     earlier_state(const Parameters &parameters, std::ostream &out)
     {
+      // That there is no state is no error: the same command then begins a run
+      // and continues it, whatever became of it before.
       const std::string file = state_file(parameters.output.directory);
       if (!std::filesystem::exists(file))
         {
@@ -67,6 +69,9 @@ namespace Debond
                                           earlier.meshes.divisions);
       begun.meshes = earlier.meshes;
       begun.path   = earlier.path;
+      // 0 is the number without an earlier run. The entries of a scene may be
+      // the same and its mesh another one, if the file of the mesh has changed.
+      // The displacements of the state would belong to other nodes then.
       if (earlier.mesh != 0 && earlier.mesh != mesh_checksum(*begun.scene))
         throw BadInput({state_file(parameters.output.directory) +
                         " is of another mesh; run without --restart"});
@@ -100,6 +105,10 @@ namespace Debond
       Answer<dim>
       solve(Answer<dim> begun, RefinementGoal<dim> *const goal) const
       {
+        // The loop over the meshes follows a load path on each of them, but
+        // without what only the last mesh gets. That is done below, on the mesh
+        // that the loop ended with; all steps are there already and are not
+        // solved again.
         Answer<dim> answer = std::move(begun);
         if (parameters.accuracy.is_adaptive())
           {
@@ -115,6 +124,9 @@ namespace Debond
       Answer<dim>
       solve_on_last_mesh(Answer<dim> begun) const
       {
+        // Steps that an earlier run, or the loop over the meshes, has done here
+        // have their files. solve_on_mesh() tells the observer of the last of
+        // them once more, so that its files are written again.
         output.begin_path(*begun.scene, begun.path.steps);
         Answer<dim> answer =
           solve_on_mesh<dim>(parameters.load_path,
@@ -153,10 +165,15 @@ namespace Debond
         AdaptiveObserver<dim> observer;
         observer.level_is_done = [this](const unsigned int   number,
                                         const AdaptiveLevel &level) {
+          // The log has a mesh as soon as it is done: the next one may take
+          // much longer.
           report_level(number, level, record);
           record.print(out);
         };
         observer.next_mesh_is_made = [this](const Answer<dim> &next) {
+          // The state is saved first. A run that is killed between the two
+          // calls leaves files of the old mesh and a state without steps; a
+          // restart removes these files because there are no steps.
           output.save(next);
           output.begin_mesh(*next.scene);
         };
@@ -207,6 +224,12 @@ namespace Debond
     ExitCode
     conclude(const RunResult<dim> &result, const std::string &output_error)
     {
+      // The exit code is 5 whenever something could not be written, since a
+      // script would otherwise look for results that are not there. It is 4 if
+      // a signal has cut short the solve, or a search, a proof or a certificate
+      // after a verified result. In all other cases the answer decides between
+      // 0 and 3; a result that is not verified is 3 also if its search was
+      // interrupted.
       const bool interrupted = result.solution.minimum.interrupted;
       const auto print       = [](const std::string &message) {
         if (is_first_rank())
@@ -242,6 +265,9 @@ namespace Debond
   void
   validate(const Parameters &parameters, const Companion &companion)
   {
+    // These are the calls by which run() refuses a scene before it writes
+    // anything, but for the state of an earlier run: one makes the scene on its
+    // first mesh, the other shows it to the companion.
     companion.begin(parameters.solver,
                     begin(parameters, RunState<dim>()).scene);
   }
@@ -255,6 +281,12 @@ namespace Debond
       std::ostream     &out,
       const RunOptions  options)
   {
+    // What can be wrong with the scene is found first, when the directory is
+    // still as it was: in the state of an earlier run, in begin() and by the
+    // companion. Then the directory is locked and cleared, so that a directory
+    // without access costs no solve. All ranks take the same steps, and what
+    // fails fails on all of them; that is why none of them waits for another
+    // one.
     dealii::Timer       total, timer;
     const RunState<dim> earlier =
       options.restart ? earlier_state<dim>(parameters, out) : RunState<dim>();
@@ -280,11 +312,18 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
     Record record(parameters.output.machine_details);
+    // The log has the problem before the solve, so that the user sees in time
+    // that it is another one than was meant.
     report_problem(begun, parameters.solver.bundle.u, record);
     if (n_started_ranks() > 1 && record.has_details())
       record.line("ranks", std::to_string(n_started_ranks()));
     record.print(out);
 
+    // The goal of the companion can ask the loop for further meshes. When
+    // check_result() has given the result a status, after() may add notes,
+    // times and fields for body.vtu and contact.vtu, therefore it comes before
+    // the report and the files. What the companion says itself stands behind
+    // the result in the log.
     timer.restart();
     static_cast<Answer<dim> &>(result) =
       Run<dim>{parameters, options, out, *output, record}.solve(

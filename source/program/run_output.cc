@@ -27,6 +27,9 @@ namespace Debond
     , output(parameters.output)
     , companion(companion)
   {
+    // The first rank holds the lock for all of them. If it does not get it the
+    // others throw its error too, instead of waiting for the first rank in the
+    // next collective call.
     on_all_ranks(scene.ranks(), [this]() {
       if (is_first_rank())
         lock = std::make_unique<DirectoryLock>(output.directory);
@@ -34,6 +37,10 @@ namespace Debond
     // The lock comes before anything is removed: another run may be writing to
     // this directory.
     begin_path(scene);
+    // Only the names of these files are needed, for which any result will do.
+    // They are removed whether this run writes them or not: a file that the
+    // scene no longer asks for would otherwise look like one of its results.
+    // The files of steps stay if the run continues after steps.
     remove_files(files(scene, {}), output.directory);
     if (begun == nullptr || begun->path.steps.empty())
       path_output->remove_steps();
@@ -53,6 +60,8 @@ namespace Debond
   RunOutput<dim>::begin_path(const Scene<dim>                     &scene,
                              const std::vector<LoadPathStep<dim>> &done)
   {
+    // The new object knows of no steps; those that are done are given to it so
+    // that the records for ParaView and load_path.csv have them as well.
     path_output.emplace(output, scene.problem());
     if (!done.empty())
       path_output->go_on_after(done);
@@ -64,6 +73,8 @@ namespace Debond
   void
   RunOutput<dim>::begin_mesh(const Scene<dim> &scene)
   {
+    // Steps are numbered from 1 on each mesh, and the new path may be shorter,
+    // so that old files would remain beside the new ones.
     begin_path(scene);
     path_output->remove_steps();
   }
@@ -84,6 +95,8 @@ namespace Debond
   void
   RunOutput<dim>::save(const Answer<dim> &answer)
   {
+    // The effective scene has all entries with their values. A later run
+    // compares them with its own to see whether the state belongs to it.
     RunState<dim> state = {effective_scene,
                            mesh_checksum(*answer.scene),
                            answer.meshes,
@@ -104,6 +117,9 @@ namespace Debond
   void
   RunOutput<dim>::withdraw()
   {
+    // The rank that holds the lock removes the files for all of them. The state
+    // is on the list whether or not it was saved, for it is no error to remove
+    // what is not there.
     if (!lock)
       return;
     written.push_back(state_file(output.directory));
@@ -118,6 +134,9 @@ namespace Debond
   bool
   RunOutput<dim>::write(const RunResult<dim> &result)
   {
+    // The first file that cannot be written ends the list. Those before it are
+    // complete and stay, but the log does not list them, there is no summary
+    // then, and the exit code is 5.
     return attempt([&]() {
       append(write_files(files(*result.scene, result), output.directory),
              written);
@@ -163,6 +182,9 @@ namespace Debond
   std::vector<OutputFile>
   RunOutput<dim>::files(const Scene<dim> &scene, const RunResult<dim> &result)
   {
+    // The order is that in which files are written: what every scene has, then
+    // the tables and records of the path, then what the companion adds. The
+    // summary is in no list, because it comes after all of them.
     std::vector<OutputFile> all = output_files(output, scene, result);
     append(path_output->files(result.path.steps, result.arc), all);
     append(companion.files(output, scene), all);
@@ -176,6 +198,8 @@ namespace Debond
   bool
   RunOutput<dim>::attempt(const Action &action)
   {
+    // write_atomically() throws on all ranks alike, so that all of them return
+    // the same value here.
     try
       {
         action();

@@ -46,6 +46,9 @@ namespace Debond
     void
     exchange(Archive &archive, std::optional<T> &value)
     {
+      // The pair of a flag and a number stands for the optional one. Reading
+      // and writing are the same code, since the operator & of an archive does
+      // what its type says; in writing the value is replaced by itself.
       bool             exists = value.has_value();
       T                number = value.value_or(T());
       archive &exists &number;
@@ -128,6 +131,8 @@ namespace Debond
     void
     exchange(Archive &archive, std::vector<T> &list)
     {
+      // The size goes first, so that a list that is read has its entries before
+      // they are filled.
       std::size_t size = list.size();
       archive    &size;
       list.resize(size);
@@ -141,6 +146,9 @@ namespace Debond
     void
     exchange(Archive &archive, RunState<dim> &state)
     {
+      // Everything that the rest of the run depends on is here, in the order of
+      // the file. Another order or another member needs another number in
+      // title_of(), since the file does not name what it contains.
       PathProgress<dim> &path = state.path;
       archive &state.scene &state.mesh &state.meshes.divisions &state.meshes
         .is_last &state.meshes.shortfall &path.kinds &state.meshes.start &path
@@ -160,6 +168,11 @@ namespace Debond
     {
       const std::array<std::string, 2> nothing = {{"nothing", "nothing"}};
       std::map<std::string, std::array<std::string, 2>> values;
+      // Both texts are effective scenes with all entries. The tables have no
+      // companion, so that its entries are unknown to them and may differ. An
+      // entry that only one of the scenes has, such as the traction on a
+      // boundary, has `nothing` in the other one. A difference in spaces is
+      // none.
       for (unsigned int k = 0; k < scenes.size(); ++k)
         {
           SceneTable         table;
@@ -180,6 +193,10 @@ namespace Debond
     bool
     may_differ(const std::string &entry)
     {
+      // These entries say how a state is found, how good it has to be and what
+      // is written of it, but not which problem it belongs to. Factors of a
+      // load path may differ because only later steps may, which
+      // earlier_state() checks.
       for (const std::string beginning : {"Accuracy/",
                                           "Output/",
                                           "Solver/",
@@ -200,6 +217,10 @@ namespace Debond
   std::uint64_t
   mesh_checksum(const Scene<dim> &scene)
   {
+    // Each cell has a number of its own and the whole mesh the sum, modulo
+    // 2^64: the sum neither depends on the order of the cells nor on the rank
+    // that owns them. The number of a cell includes its place in the mesh, so
+    // that cells which change places change the sum.
     const auto   &dofs = scene.problem().unknowns().dof_handler();
     std::uint64_t sum  = 0; // on any number of ranks the same
     for (const auto &cell : owned_cells(dofs))
@@ -241,6 +262,9 @@ namespace Debond
   RunState<dim>
   read_state(const std::string &file_name, const std::string &scene)
   {
+    // Every rank reads the file for itself and comes to the same result or the
+    // same error. A file that cannot be opened gives an empty title, which is
+    // not that of a state.
     std::ifstream file = open_plain_file(file_name);
     std::string   title;
     std::getline(file, title);
