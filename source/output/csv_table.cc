@@ -9,6 +9,9 @@ namespace Debond
   std::string
   CsvTable::cell(const std::string &text)
   {
+    // A text with a comma, a quotation mark or a new line would be taken for
+    // several cells or rows. It stands between quotation marks then, and those
+    // that it has itself are doubled.
     if (text.find_first_of(",\"\n") == std::string::npos)
       return text;
     return '"' + boost::algorithm::replace_all_copy(text, "\"", "\"\"") + '"';
@@ -19,6 +22,8 @@ namespace Debond
   void
   CsvTable::add_row(const std::vector<Cell> &cells)
   {
+    // The titles are those of the first row, with which the caller makes all
+    // others agree.
     std::vector<std::string> titles, row;
     for (const auto &[title, text] : cells)
       {
@@ -35,6 +40,8 @@ namespace Debond
   void
   CsvTable::write(const std::string &file_name) const
   {
+    // The table is written as a whole each time, so that a reader never finds
+    // half a row.
     write_atomically(file_name, [&](std::ostream &out) {
       for (const std::vector<std::string> &row : rows)
         out << join(row, ",") << '\n';

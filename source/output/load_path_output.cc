@@ -18,7 +18,9 @@ namespace Debond
 
 
 
-    /// The cells of a row of load_path.csv.
+    /// The cells of a row of load_path.csv. They are added with their titles,
+    /// so that a title and what stands below it are written down in one place.
+    /// Vectors and lists become several cells.
     class Row
     {
     public:
@@ -55,6 +57,8 @@ namespace Debond
       add(const std::string                     &title,
           const std::vector<dealii::Point<dim>> &points)
       {
+        // Points are one cell, because their number changes from step to step
+        // and the columns have to stay.
         std::string text;
         for (const dealii::Point<dim> &point : points)
           for (unsigned int d = 0; d < dim; ++d)
@@ -69,6 +73,9 @@ namespace Debond
       void
       add(const std::string &prefix, const LoadPathState<dim> &state)
       {
+        // One number may become several cells, a vector for each of its
+        // components. All of those that it added get the prefix, by which the
+        // columns of the global branch differ from those of the path.
         LoadPathState<dim>::for_each_number(
           state, [&](const std::string &title, const auto &number) {
             const std::size_t n = cells.size();
@@ -87,6 +94,9 @@ namespace Debond
     write_load_path(const std::vector<LoadPathStep<dim>> &steps,
                     const std::string                    &file_name)
     {
+      // The factor is that of the loads. A cell is empty if the number is not
+      // known, such as the factor of a change if nothing changed. The columns
+      // of the global branch are there in any case.
       CsvTable table;
       for (const LoadPathStep<dim> &step : steps)
         {
@@ -117,6 +127,10 @@ namespace Debond
   void
   LoadPathOutput<dim>::remove_steps() const
   {
+    // Only what write_body_vtu() and write_contact_vtu() leave is removed, and
+    // the folder if nothing else is in it. The list is made before anything is
+    // removed, as a folder that changes while it is read may be read wrongly.
+    // Errors are ignored: whether files can be written is seen when they are.
     if (!is_first_rank())
       return;
     std::vector<std::filesystem::path> old;
@@ -140,6 +154,10 @@ namespace Debond
   void
   LoadPathOutput<dim>::go_on_after(const std::vector<LoadPathStep<dim>> &done)
   {
+    // The last step is left out here, since add() is called for it once more. A
+    // body of several ranks is a .pvtu file, so that either name is looked for,
+    // however many ranks there are now. Steps whose files are gone are left out
+    // of the records for ParaView.
     so_far.assign(done.begin(), done.end() - 1);
     const auto find =
       [this](const std::string &body, const unsigned int step, Series &series) {
@@ -164,17 +182,27 @@ namespace Debond
                            const DofVector         &u,
                            const Verification<dim> &verification)
   {
+    // After the first error nothing more is tried: the disk is full, or the
+    // folder is gone. The path continues, because its states are worth more
+    // than their files, and the error is told when the other files are written.
+    // All ranks get here with the same error, since all functions that write
+    // agree on it.
     if (!error.empty())
       return;
     try
       {
-        // Of a run that is killed most is there; of long paths few are written
-        // more than sixty times.
+        // The table is written again and again, so that most of it is there if
+        // the run is killed. To write all rows after each step would take a
+        // time that grows with the square of their number. Therefore it is
+        // written after each of the first 63 steps, after every second one up
+        // to 127, and so on.
         so_far.push_back(step);
         if (so_far.size() % (1 + so_far.size() / 64) == 0)
           write_load_path(so_far, path("load_path.csv"));
         if (!(output.path_body_vtu || output.path_contact_vtu))
           return;
+        // All ranks create the folder: it is no error if it exists, and each of
+        // them may write a piece of the body into it.
         on_all_ranks(MPI_COMM_WORLD, [&]() {
           std::filesystem::create_directories(path(directory_of_steps));
         });
@@ -209,6 +237,9 @@ namespace Debond
   LoadPathOutput<dim>::files(const std::vector<LoadPathStep<dim>> &steps,
                              const std::vector<LoadPathStep<dim>> &arc) const
   {
+    // The table of the path is the last one and throws what went wrong with the
+    // files of steps, so that all that can be written is written before. It is
+    // complete here, with the global branch, and replaces those of add().
     return {{"load_path_arc.csv",
              [&arc]() { return !arc.empty(); },
              [&arc](const std::string &file) { write_load_path(arc, file); }},
@@ -233,6 +264,8 @@ namespace Debond
     return {name,
             [&series]() { return !series.empty(); },
             [&series](const std::string &file) {
+              // The record has the files by their time, which is the step, and
+              // relative to its own folder.
               write_atomically(file, [&series](std::ostream &out) {
                 dealii::DataOutBase::write_pvd_record(out, series);
               });
@@ -255,6 +288,9 @@ namespace Debond
   LoadPathOutput<dim>::name_of_step(const std::string &body,
                                     const unsigned int step) const
   {
+    // Names with leading zeros have the order of the steps in any list of
+    // files. More than five digits are not needed, since a path has at most
+    // 10000 factors.
     return directory_of_steps + '/' + body + '-' +
            dealii::Utilities::int_to_string(step, 5) + ".vtu";
   }

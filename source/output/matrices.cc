@@ -21,6 +21,9 @@ namespace Debond
           const Writer      &numbers,
           const std::string &path)
     {
+      // Seventeen digits give back the same numbers. The first line says what
+      // follows: an array of all numbers, column by column, or coordinates with
+      // a value, and which symmetry lets a part of them out.
       write_atomically(path, [&](std::ostream &out) {
         out.precision(std::numeric_limits<double>::max_digits10);
         out << "%%MatrixMarket matrix " << kind << '\n';
@@ -38,6 +41,8 @@ namespace Debond
       write(
         "array real general",
         [&](std::ostream &out) {
+          // The sizes come first, rows and columns. All columns have as many
+          // numbers as the first one.
           out << (columns.empty() ? 0 : columns[0].size()) << ' '
               << columns.size() << '\n';
           for (const Column &column : columns)
@@ -54,6 +59,8 @@ namespace Debond
     DofVector
     in_order(const DofVector &v, const Order &order)
     {
+      // The numbers of degrees of freedom depend on the number of ranks. Files
+      // have those of one rank, order[i] being that of degree of freedom i.
       DofVector result(v.size());
       for (unsigned int i = 0; i < v.size(); ++i)
         result(order[i]) = v(i);
@@ -72,6 +79,9 @@ namespace Debond
                  Entries            entries,
                  const std::string &path)
     {
+      // Entries come from the ranks in any order. Sorted by row and column the
+      // file is the same on any number of them. The format counts rows and
+      // columns from 1.
       std::sort(entries.begin(), entries.end());
       write(
         "coordinate real " + symmetry,
@@ -91,6 +101,10 @@ namespace Debond
     void
     write_operator(const ElasticProblem<dim> &problem, const std::string &path)
     {
+      // Each rank has the rows of A that it owns, and every rank gets all
+      // entries, since other programs want one file. The format has one
+      // triangle of a symmetric matrix, here the lower one in the numbers of
+      // one rank, which need not be a triangle in those of A.
       const auto &A     = problem.matrix();
       const Order order = problem.unknowns().serial_order();
       Entries     own, all;
@@ -112,6 +126,8 @@ namespace Debond
     void
     write_dense(const MatrixView &S, const std::string &path)
     {
+      // The lower triangle, column by column, is what the format has of a dense
+      // symmetric matrix.
       write(
         "array real symmetric",
         [&](std::ostream &out) {
@@ -130,6 +146,11 @@ namespace Debond
     void
     write_frames(const ElasticUnknowns<dim> &unknowns, const std::string &path)
     {
+      // F is the product of the matrices of the steps in their order, each of
+      // which is the identity but for the rows of some nodes. There the
+      // unknowns are to_unknowns times the value at the node less the multiples
+      // of those at others, as ChangeOfBasis::to_unknowns() has it. Entries
+      // that cancel to 0 in the product are left out.
       using Matrix                    = Eigen::SparseMatrix<double>;
       const ChangeOfBasis<dim> &basis = unknowns.basis();
       const unsigned int        n     = unknowns.n_dofs();
@@ -180,6 +201,8 @@ namespace Debond
           condense_to_contact(scene.problem(), scene.adhesion())));
       return **on_contact;
     };
+    // The numbers of contact nodes are in the order of contact_profile.csv and
+    // need no renumbering, since all ranks know the whole contact boundary.
     const auto of_nodes = [&scene](const std::string &path,
                                    const auto        &number_of) {
       std::vector<double> numbers;
@@ -188,6 +211,10 @@ namespace Debond
       write_array<std::vector<double>>({numbers}, path);
     };
     std::vector<OutputFile> files;
+    // No file of these is written unless the scene asks for them, but all are
+    // listed, so that those of an earlier run are removed. Each function
+    // computes what it writes when it is called, so that other scenes have no
+    // factorisation for S.
     const auto add = [&](const std::string &name, const auto &write) {
       files.push_back({name, [wanted]() { return wanted; }, write});
     };
@@ -219,6 +246,8 @@ namespace Debond
     add("c_0.mtx", [condensed](const std::string &path) {
       write_array<std::vector<double>>({{condensed().energy_at_zero()}}, path);
     });
+    // Rows of A, counted from 1 as in the files. They say which unknowns the
+    // rows of S are.
     add("contact.mtx", [&scene](const std::string &path) {
       std::vector<double> rows;
       const Order         order = scene.problem().unknowns().serial_order();
@@ -226,6 +255,9 @@ namespace Debond
         rows.push_back(static_cast<double>(order[i]) + 1.);
       write_array<std::vector<double>>({rows}, path);
     });
+    // The share of the boundary that belongs to a node, by which nodal
+    // quadrature weights the law there, and below its initial gap, by which
+    // u_nu exceeds the unknown s.
     add("weights.mtx", [of_nodes](const std::string &path) {
       of_nodes(path, [](const auto &node) { return node.measure; });
     });

@@ -13,6 +13,9 @@ namespace Debond
   remove_files(const std::vector<OutputFile> &files,
                const std::string             &directory)
   {
+    // A folder or a pipe with the name of a file is not removed. That a file
+    // could not be removed is no error here: to write it fails with the
+    // system's reason, if it is written at all.
     if (!is_first_rank())
       return;
     for (const OutputFile &file : files)
@@ -30,6 +33,9 @@ namespace Debond
   write_files(const std::vector<OutputFile> &files,
               const std::string             &directory)
   {
+    // The files come in the order of the list, each of them whole or not at
+    // all. All ranks decide alike which ones are wanted, since each file is
+    // written by all of them together.
     std::vector<std::string> written;
     for (const OutputFile &file : files)
       if (file.is_wanted())
@@ -48,6 +54,9 @@ namespace Debond
     void
     write_iterations(const Solution &result, const std::string &path)
     {
+      // The history ends with the state that the method led to. If search or
+      // proof replaced it, one more row has J of the state that counts. Of the
+      // two histories one is filled, by the kind of the method.
       const std::optional<double> found =
         result.is_replaced ? std::make_optional(result.functional) :
                              std::nullopt;
@@ -66,8 +75,14 @@ namespace Debond
                const Scene<dim>       &scene,
                const RunResult<dim>   &result)
   {
+    // A file is listed once, for a run that removes it before the solve and
+    // writes it afterwards. The functions keep references, so that the same
+    // list can be made before there is a result. Most files need a
+    // displacement, which there is none of if the body detaches at once.
     std::vector<OutputFile> files = matrix_files(scene, output.matrices);
-    // One or the other.
+    // One rank writes body.vtu, several the pieces and body.pvtu. Both are in
+    // the list, so that the other one does not remain of an earlier run with
+    // another number of ranks.
     for (const std::string name : {"body.vtu", "body.pvtu"})
       files.push_back({name,
                        [&, name]() {

@@ -13,6 +13,8 @@ namespace Debond
   void
   Record::print(std::ostream &out)
   {
+    // The lines are flushed, since what follows may take long or be killed. The
+    // numbers for summary.json stay: they are written once, at the end.
     out << log.str() << std::flush;
     log.str("");
   }

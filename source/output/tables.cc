@@ -13,6 +13,10 @@ namespace Debond
   {
     AssertDimension(boundary.nodes.size(), verification.nodes.size());
 
+    // Each column comes from one list with an entry for each contact node, all
+    // of them in the order of the nodes, which is that of contact.mtx as well.
+    // With quadratic displacements the midpoints of edges are nodes, and their
+    // u_nu is a coefficient.
     const std::string xyz = "xyz";
     CsvTable          table;
     const auto       &nodes = verification.nodes;
@@ -21,12 +25,18 @@ namespace Debond
         return node.position[d];
       });
     table.add("u_nu", nodes, &ContactNodeState::u_nu);
+    // The force of the node is positive where the foundation pushes and
+    // negative where bonds pull. Divided by its share of the boundary, a length
+    // or in 3D and with an axis an area, it is a density that can be compared
+    // with the traction, which the law says at the node itself.
     table.add("normal_force", nodes, &ContactNodeState::normal_force);
     table.add("normal_force_density", boundary.nodes, [&](const auto &node) {
       const auto i = &node - boundary.nodes.data();
       return verification.nodes[i].normal_force / node.measure;
     });
     table.add("normal_traction", nodes, &ContactNodeState::normal_traction);
+    // The interval of forces that the law allows at the displacement of the
+    // node. It has no upper end in contact, where the number is infinite.
     table.add("allowed_lower", nodes, [](const auto &node) {
       return node.allowed_force.lower;
     });
@@ -34,6 +44,8 @@ namespace Debond
       return node.allowed_force.upper;
     });
     table.add("violation", nodes, &ContactNodeState::violation);
+    // Words and not numbers: the numbers of states in contact.vtu depend on the
+    // law from 6 on.
     table.add("state", nodes, [&](const auto &node) {
       return verification.name(node.state);
     });
@@ -41,6 +53,9 @@ namespace Debond
       table.add(std::string("tangential_force_") + xyz[d],
                 verification.tangential_forces,
                 [d](const auto &force) { return force[d]; });
+    // Columns that only bonds in shear have come before those that all scenes
+    // end with. The force along the boundary is a vector above; its size, over
+    // the share of the node, is here.
     if (!verification.slips.empty())
       {
         for (unsigned int d = 0; d < dim; ++d)
@@ -75,6 +90,10 @@ namespace Debond
                 const std::optional<double>        &found,
                 const std::string                  &file_name)
   {
+    // v_k is negative, the descent that the direction problem predicts. The
+    // step is t_L, which is 0 in a null step, and the new subgradient was
+    // computed at t_R. The row of a state that was found later has only its
+    // number, its J and its kind.
     CsvTable table;
     table.add("iteration", history, &BundleIteration::iteration);
     table.add("functional", history, &BundleIteration::functional);
@@ -98,6 +117,9 @@ namespace Debond
                 const std::optional<double>                  &found,
                 const std::string                            &file_name)
   {
+    // The residual is that of the optimality conditions, relative to the
+    // largest force on a contact node. Linear iterations are 0 if the systems
+    // were factorised. The contact nodes are the bounds that are active.
     CsvTable table;
     table.add("iteration", history, &MajoriseMinimiseIteration::iteration);
     table.add("functional", history, &MajoriseMinimiseIteration::functional);
@@ -120,6 +142,9 @@ namespace Debond
   write_history(const std::vector<ProofProgress> &history,
                 const std::string                &file_name)
   {
+    // A row for each time at which the proof has told its progress: the nodes
+    // of its tree so far and those that wait, the lower bound of J and the best
+    // J so far, and the seconds since it began.
     CsvTable table;
     table.add("nodes", history, &ProofProgress::nodes);
     table.add("open", history, &ProofProgress::open);

@@ -19,6 +19,13 @@ namespace Debond
     body_grid(const ElasticUnknowns<dim> &unknowns,
               const DofVector            &displacement)
     {
+      // deal.II's own output would write each cell with points of its own. Here
+      // each node becomes a point when the first cell with it is met, and later
+      // cells refer to this point: the file is smaller, and fields at points
+      // are continuous. The nodes of a cell are its vertices and then the
+      // middles of its edges, and deal.II's order of edges is VTK's as well. Of
+      // several ranks each has its own cells; nodes between them are points of
+      // both.
       using Type                 = VtuGrid::CellType;
       const auto        &dofs    = unknowns.dof_handler();
       const bool         linear  = unknowns.degree() == 1;
@@ -39,6 +46,8 @@ namespace Debond
           cell->get_dof_indices(cell_dofs);
           for (unsigned int n = 0; n < n_nodes; ++n)
             {
+              // The degrees of freedom of a node are numbered one after the
+              // other, the first one by dim times the number of the node.
               const auto    first = cell_dofs[dim * n];
               std::int32_t &point = point_of_node[first / dim];
               if (point < 0)
@@ -74,6 +83,11 @@ namespace Debond
                 const ErrorEstimate          *estimate,
                 const std::vector<CellField> &more)
     {
+      // All ranks have to write the same fields, because one list of them
+      // stands in the joining file. Whether there are regions or turned axes
+      // anywhere is therefore asked of all ranks. The field of the stress
+      // across the plane is for plane strain, which is also the hypothesis of a
+      // body of revolution; there it is the stress around the axis.
       using Stress               = dealii::SymmetricTensor<2, dim>;
       const auto    &dofs        = problem.unknowns().dof_handler();
       const auto    &first       = *dofs.begin_active();
@@ -91,6 +105,8 @@ namespace Debond
       const bool has_zz =
         dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
                       Material::Hypothesis::plane_strain;
+      // deal.II numbers the components of a symmetric tensor in a row, those of
+      // the diagonal first.
       const auto names_of_components = [](const std::string &axes) {
         std::vector<std::string> names;
         for (unsigned int c = 0; c < Stress::n_independent_components; ++c)
@@ -103,7 +119,9 @@ namespace Debond
       const std::vector<std::string> components = names_of_components("xyz");
       const std::vector<std::string> along_axes = names_of_components("123");
 
-      // Each cell comes to the fields in the same order.
+      // The first cell makes the fields, in the order in which it adds its
+      // numbers, and each next one adds its own in the same order; `next`
+      // counts them. Therefore no number depends on the cell for being there.
       std::vector<VtuGrid::Field> all;
       std::size_t                 next = 0;
       const auto add = [&](const char *const name, const double number) {
@@ -140,6 +158,9 @@ namespace Debond
           add("von_mises", von_mises(stress));
           add("strain_energy_density",
               fields.material(cell).energy_density(stress));
+          // What belongs to a cell is divided by its volume, so that cells of
+          // different sizes can be compared. For a body of revolution that is
+          // the volume of the ring.
           if (estimate != nullptr)
             add("error_density",
                 estimate->cells[index] / cell->measure() /
@@ -207,6 +228,11 @@ namespace Debond
               const typename ContactBoundary<dim>::Face &face,
               const unsigned int                         k)
     {
+      // The values are in the order of ContactValues, vectors with three
+      // components. Forces are divided by the measure of the node, its share of
+      // the boundary. Without `held_vertices` a held vertex is one that
+      // supports fix at the foundation: its displacement and its opening are 0.
+      // What the law would say there is not known and is NaN.
       constexpr double       nan = std::numeric_limits<double>::quiet_NaN();
       dealii::Tensor<1, dim> u, force, slip, shear;
       ContactNodeState       state   = {};
@@ -272,6 +298,12 @@ namespace Debond
               const typename ContactBoundary<dim>::Face &face,
               const unsigned int                         k)
     {
+      // The value of a quadratic polynomial in the middle of an edge is half of
+      // the coefficient of the edge and a quarter of those of both ends. That
+      // is for the displacement, the slip, and those scalars that are
+      // displacements. Forces and tractions at the node of an edge are its own
+      // and stay as they are. The slip comes behind the n numbers that all laws
+      // have.
       const auto of = [&](const unsigned int vertex) {
         return values_of(boundary, verification, face, vertex);
       };
@@ -294,6 +326,9 @@ namespace Debond
     ContactValues
     mean(const ContactValues &own, const std::vector<ContactValues> &others)
     {
+      // If the own value is not known, neither is the mean: the share of a held
+      // vertex has no forces. If that of a neighbour is not known, the own one
+      // alone counts.
       ContactValues result;
       for (unsigned int c = 0; c < own.size(); ++c)
         {
@@ -317,6 +352,10 @@ namespace Debond
     std::vector<std::array<unsigned int, dim>>
     parts_of_face(const unsigned int degree)
     {
+      // Numbers below dim are vertices, the next ones the edges in the order of
+      // simplex_edges. Of degree 2 a face has twice as many parts in 2D and
+      // four times as many in 3D: one at each corner and one between the
+      // middles of the edges.
       if constexpr (dim == 2)
         return degree == 1 ?
                  std::vector<std::array<unsigned int, 2>>{{{0, 1}}} :
@@ -342,6 +381,12 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
+    // The grid is that of the own cells of this rank. One rank writes it under
+    // the name that is asked for. Of several each writes a file of its own at
+    // the same time, and none of them communicates while it does;
+    // on_all_ranks() tells all of them if one could not write. The joining file
+    // comes last, so that it never refers to a piece that is not complete. It
+    // names the pieces without their folder, so that a directory can be moved.
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     const DofVector displacement = unknowns.cartesian_displacement(u, factors);
     VtuGrid         grid         = body_grid(unknowns, displacement);
@@ -391,6 +436,9 @@ namespace Debond
                     const std::string            &file_name,
                     const std::vector<CellField> &more)
   {
+    // The shares of nodes are lines in 2D and quadrilaterals in 3D. The names
+    // of the fields at points have the order of ContactValues, whose numbers
+    // are handed out to the fields one after the other.
     VtuGrid grid = {dim == 2 ? VtuGrid::CellType::line :
                                VtuGrid::CellType::quadrilateral,
                     2 * (dim - 1)};
@@ -416,8 +464,12 @@ namespace Debond
           field.numbers.push_back(static_cast<float>(*value++));
     };
 
-    // Each vertex has its share of the face, so that its state can be shown
-    // without a transition to that of its neighbours.
+    // Each node has its share of the face, so that its state can be shown
+    // without a transition to that of its neighbours: from the node to the
+    // middle of the line to the next one, in 3D with the centre of the part.
+    // Shares have points of their own, since a value at a point between two
+    // nodes may be known in one share and not in the other. A face of degree 2
+    // is cut into parts first, whose corners are all of its nodes.
     for (unsigned int f = 0; f < boundary.faces.size(); ++f)
       for (const auto &part : parts_of_face<dim>(boundary.degree))
         {
@@ -429,6 +481,8 @@ namespace Debond
               values[k] = values_at(boundary, verification, face, part[k]);
               corners[k] =
                 part[k] < dim ?
+                  // The middle of an edge is on the straight line between its
+                  // ends.
                   face.vertices[part[k]] :
                   face.vertices[simplex_edges[part[k] - dim][0]] +
                     0.5 * (face.vertices[simplex_edges[part[k] - dim][1]] -
@@ -437,6 +491,9 @@ namespace Debond
 
           for (unsigned int k = 0; k < dim; ++k)
             {
+              // The four points of a quadrilateral go around it: the node, the
+              // middle towards the next one, the centre, the middle towards the
+              // one before. Of a line there are the first two.
               const auto add_middle = [&](const unsigned int other) {
                 add_point(corners[k] + 0.5 * (corners[other] - corners[k]),
                           mean(values[k], {values[other]}));

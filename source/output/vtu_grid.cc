@@ -25,6 +25,11 @@ namespace Debond
                   const int          strategy,
                   Bytes             &data)
     {
+      // The data get room for the worst case first, which compressBound() knows
+      // for the sizes of window and memory below, zlib's defaults. So one call
+      // of deflate() takes the whole block. With these 15 bits the block has
+      // the header of zlib, which readers of VTK expect. deflateEnd() does
+      // nothing for a stream that has not begun.
       const std::size_t begin = data.size();
       data.resize(begin + compressBound(n_bytes));
       z_stream   stream = {};
@@ -54,6 +59,10 @@ namespace Debond
              const std::size_t  n_bytes,
              std::ostream      &out)
     {
+      // Blocks of a megabyte can be read one by one, without room for the whole
+      // array. The size of the last block is 0 if all blocks are full, and an
+      // array without numbers has a header with 0 blocks. The header is known
+      // only after the last block, so that the data wait in memory until then.
       constexpr std::size_t size_of_block = 1 << 20, size_of_sample = 1 << 15;
       const std::size_t     n_blocks =
         (n_bytes + size_of_block - 1) / size_of_block;
@@ -79,6 +88,8 @@ namespace Debond
                           has_repetitions ? Z_DEFAULT_STRATEGY : Z_RLE,
                           data)));
         }
+      // Header and data are encoded apart: a reader decodes the header first,
+      // which says how many bytes follow.
       const auto *const bytes = reinterpret_cast<const Bytef *>(header.data());
       out << dealii::Utilities::encode_base64(
                {bytes, bytes + header.size() * sizeof(header[0])})
@@ -90,6 +101,9 @@ namespace Debond
     void
     begin_file(const std::string &type, std::ostream &out)
     {
+      // Numbers are written as they are in memory, and the file says which of
+      // the two orders of bytes that is. Headers of arrays have 32 bits, which
+      // suffices for blocks of this size.
       out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"" << type
           << "\" version=\"1.0\" byte_order=\""
           << (boost::endian::order::native == boost::endian::order::little ?
@@ -122,6 +136,8 @@ namespace Debond
               const std::vector<Number> &numbers,
               std::ostream              &out)
     {
+      // In a file without an appended part "binary" stands for numbers in
+      // base64 between the tags.
       out << "<DataArray " << described << " format=\"binary\">\n";
       compress(reinterpret_cast<const Bytef *>(numbers.data()),
                numbers.size() * sizeof(Number),
@@ -136,6 +152,8 @@ namespace Debond
                const std::vector<VtuGrid::Field> &fields,
                std::ostream                      &out)
     {
+      // All fields are in single precision, which is half as many bytes;
+      // pictures show no more digits.
       out << '<' << where << ">\n";
       for (const VtuGrid::Field &field : fields)
         add_array(attributes("Float32", field), field.numbers, out);
@@ -148,6 +166,11 @@ namespace Debond
   void
   write_vtu(const VtuGrid &grid, std::ostream &out)
   {
+    // A file has one piece with points, cells, numbers at points and numbers in
+    // cells, in this order. Cells are three arrays: the points of all cells one
+    // behind the other, the place behind the last point of each cell there, and
+    // the kind of each cell. All cells are of one kind, so that the last two
+    // follow from the number of cells.
     const std::size_t         n_cells = grid.cells.size() / grid.points_of_cell;
     std::vector<std::int32_t> ends(n_cells);
     for (std::size_t cell = 0; cell < n_cells; ++cell)
@@ -177,6 +200,9 @@ namespace Debond
              const std::vector<std::string> &pieces,
              std::ostream                   &out)
   {
+    // The file has no numbers: it lists the fields that each piece has and the
+    // files of the pieces, relative to its own folder. Points have coordinates
+    // in single precision, as in the pieces. No piece has cells of another one.
     const auto declare = [&out](const std::string                 &where,
                                 const std::vector<VtuGrid::Field> &fields) {
       out << "<P" << where << ">\n";
