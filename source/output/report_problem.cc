@@ -12,6 +12,9 @@ namespace Debond
     void
     report_program(Record &record)
     {
+      // Revision, version and build type are in the summary in any case, so
+      // that a result can be made again. The log has them only with details:
+      // logs without details are compared between machines and revisions.
       record.add({{"revision", version.revision},
                   {"deal_ii_version", version.deal_ii},
                   {"build_type", version.build_type}});
@@ -24,8 +27,10 @@ namespace Debond
 
 
 
-    /// Reports material, supports, loads and contact as the scene has them.
-    /// The strength that follows from stiffness and energy, for the log.
+    /// The strength in shear that follows from stiffness and energy, for the
+    /// log. A law scaled by a factor in its stiffness and another one in its
+    /// energy has the root of their product in its strength. An entry that is
+    /// empty, or an expression that is no number, has the factor 1.
     std::string
     strength_in_shear(const ProblemParameters &problem)
     {
@@ -49,6 +54,9 @@ namespace Debond
       const auto three = [](const Three &of) {
         return words(of[0], ", ", of[1], ", ", of[2]);
       };
+      // An orthotropic material has nine numbers in place of two. Expansion and
+      // angle are mentioned if they are not zero, and an expansion that is the
+      // same along all axes as one number.
       const Orthotropy own     = material.orthotropy.value_or(Orthotropy());
       const Three     &alpha   = material.thermal_expansions;
       const bool       is_even = alpha[0] == alpha[1] && alpha[0] == alpha[2];
@@ -73,6 +81,11 @@ namespace Debond
                 const unsigned int       n_contact_nodes,
                 Record                  &record)
     {
+      // The log repeats what the scene says, in the order of its sections and
+      // with the texts that it has, so that a look at it tells whether the
+      // scene is the one that was meant. An entry that is empty has no line,
+      // but for supports and contact: that a body is clamped nowhere is worth a
+      // line.
       const auto list = [](const std::set<std::string> &names) {
         return join({names.begin(), names.end()}, ", ");
       };
@@ -87,6 +100,8 @@ namespace Debond
           for (const auto &[side, text] : texts)
             line(label + ' ' + side, text);
         };
+      // The hypothesis is that of the whole body, whatever the materials of
+      // regions are.
       const Material &material = problem.materials.everywhere;
       record.line("material",
                   text_of(material),
@@ -115,16 +130,22 @@ namespace Debond
                   ", ",
                   n_contact_nodes,
                   " nodes");
+      // The quadrature belongs to the discrete law and stands with its numbers;
+      // without adhesion there are neither.
       record.line("contact law",
                   problem.law.name,
                   problem.law.data.empty() ?
                     "" :
                     ", " + problem.law.data + ", " + problem.quadrature_name +
                       " quadrature");
+      // Bonds that a boundary has for itself, in place of those above.
       for (const auto &[side, bonds] : problem.law.boundaries)
         record.line(
           "bonds " + side, "a = ", bonds.stiffness, ", M = ", bonds.threshold);
       lines("tangential", problem.tangential_displacements);
+      // The strength in shear can be said only of a law with several pieces
+      // whose numbers hold everywhere: one piece never breaks, and bonds that
+      // vary have another strength at each point.
       if (problem.shear.is_somewhere)
         record.line("bonds in shear",
                     problem.shear.stiffness.empty() ?
@@ -150,6 +171,8 @@ namespace Debond
                  const double       bundle_weight,
                  Record            &record)
   {
+    // All ranks come here, since extents of the mesh are found by all of them
+    // together. The stream of the others takes nothing.
     const Scene<dim>        &scene   = *begun.scene;
     const MethodChoice      &choice  = begun.choice;
     const ProblemParameters &problem = scene.parameters();
@@ -165,6 +188,9 @@ namespace Debond
       problem.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
       n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
+    // These are keys of summary.json for studies. With refined meshes they are
+    // those of the first one; report_result() replaces the numbers of cells,
+    // unknowns and contact nodes.
     record.add(
       {{"scene", problem.scene},
        {"dimension", dim},
@@ -178,6 +204,9 @@ namespace Debond
        {"linear_solver", to_string(choice.linear_solver)}});
     if (record.has_details())
       record.line("scene", problem.scene);
+    // The extents show a scale or a unit that is wrong. A rank knows the
+    // vertices of its own part of the mesh, so that the extremes are taken over
+    // all ranks; each of them asks for the same numbers in the same order.
     const dealii::BoundingBox<dim> box(scene.problem()
                                          .unknowns()
                                          .dof_handler()
@@ -200,12 +229,16 @@ namespace Debond
                   words(", with fixed tangential ones ", n_dofs_paper) :
                   "");
     report_data(problem, n_nodes, record);
+    // No support holds these rigid motions, so that A is singular and the body
+    // can detach. Their names tell of a support that was forgotten.
     if (const auto &motions =
           scene.problem().unknowns().held_by_contact().names;
         !motions.empty())
       record.line("held by contact",
                   join(motions, ", "),
                   ", by bonds and the foundation alone");
+    // A choice of the program is said with its reason, one that the scene has
+    // made has none.
     std::vector<std::string> reasons;
     if (!choice.reason.empty())
       reasons.push_back(choice.reason);
@@ -229,6 +262,10 @@ namespace Debond
                const AdaptiveLevel &level,
                Record              &record)
   {
+    // The levels are an array, to which the pointer with the next number
+    // appends an entry. The error is relative to J or to the scale of the
+    // estimate, the gap is GoalOnMesh::width and 0 without a goal, and seconds
+    // are those of mesh, assembly and solve.
     if (number == 0)
       record.heading("Meshes");
     record.add("/levels/" + std::to_string(number),
@@ -263,6 +300,8 @@ namespace Debond
               const double          peak_memory,
               Record               &record)
   {
+    // Times and memory differ from run to run. They are always in the summary,
+    // and in the log only with details.
     const auto log = [&record](const std::string &label, const double seconds) {
       if (record.has_details())
         record.line(label, fixed_point(seconds, 4));
@@ -274,10 +313,14 @@ namespace Debond
       {
         record.add("/timings_s/" + part, seconds);
         log(part, seconds);
+        // Parts of the solve are indented below it; they need not add up to it.
         if (part == "solve")
           for (const auto &[name, seconds_of_it] : solve_parts)
             log("  " + name, seconds_of_it);
       }
+    // The key is there in any case, as an empty object if the method has no
+    // parts. The estimate is the one by which the linear solver was chosen, and
+    // the peak the largest of all ranks.
     record.add("/timings_s/solve_parts",
                solve_parts.empty() ? Record::Json::object() :
                                      Record::Json(solve_parts));
@@ -298,6 +341,7 @@ namespace Debond
   void
   report_files(const std::vector<std::string> &files, Record &record)
   {
+    // Paths depend on where the program is run.
     if (!record.has_details())
       return;
     record.heading("Written");

@@ -35,6 +35,8 @@ namespace Debond
                Record                     &record,
                const Format &...format)
     {
+      // The summary has the numbers with all digits whatever the format of the
+      // log is.
       const std::vector<double> numbers(vector.begin_raw(), vector.end_raw());
       std::vector<std::string>  texts;
       for (const double number : numbers)
@@ -65,6 +67,10 @@ namespace Debond
     void
     report_status(const RunResult<dim> &result, Record &record)
     {
+      // The status is a word that scripts compare. The message says why there
+      // is no success; notes do not decide on the status. J is that of the last
+      // mesh and of the last factor of a path, and NaN, in the summary null, if
+      // the body detaches at once.
       const Solution &solve = result.solution;
       record.heading(result.path.steps.empty() ?
                        "Result" :
@@ -81,6 +87,10 @@ namespace Debond
         record.line("note", note);
       if (result.has_displacement())
         record.line("J", scientific(solve.functional, 10));
+      // The key is there if a search or a proof could have found a lower state,
+      // so that a study sees whether one was looked for. The line is for a
+      // state that was replaced; the last row of history.csv then belongs to
+      // the lower one.
       if (solve.functional_from_start)
         record.add("/functional_from_start", *solve.functional_from_start);
       if (solve.is_replaced)
@@ -97,6 +107,10 @@ namespace Debond
     void
     report_coming_off(const ComingOff<dim> &off, Record &record)
     {
+      // The motion is scaled so that the largest opening is 1, and the work of
+      // the loads is for that. In 2D the rotation is one number. What goes
+      // towards the foundation is rounding, and shows how far the motion can be
+      // trusted.
       const auto add = [&](const std::string &name, const auto &vector) {
         return add_vector("/comes_off/" + name,
                           vector,
@@ -129,6 +143,10 @@ namespace Debond
     void
     report_estimate(const ErrorEstimate &estimate, Record &record)
     {
+      // The error is relative. If J is near zero, what it is relative to would
+      // say nothing, and the energy of the stresses takes its place; the second
+      // key says which. The factor is null for a single mesh, of which nobody
+      // knows how much more than the residuals say a finer one would gain.
       record.add(
         {{"estimated_error", estimate.relative()},
          {"estimated_error_of", estimate.is_of_J ? "J" : "stress energy"},
@@ -155,6 +173,11 @@ namespace Debond
                    const unsigned int  n_nodes,
                    Record             &record)
     {
+      // The kind of the minimum is a statement about the result and is empty
+      // without a success. The numbers of a search are there all the same: its
+      // trials, those that found a lower state, and those without a result. It
+      // may have been on a coarser mesh, whose contact nodes are fewer than
+      // n_nodes.
       const bool        details = record.has_details();
       const std::string kind    = is_success ? to_string(minimum.kind) : "";
       record.add("/minimum",
@@ -181,6 +204,9 @@ namespace Debond
 
       if (!minimum.proof_attempted)
         return;
+      // In the log the figures of a proof are rounded to the safe side: the
+      // lower bound is not above its value and the gap not below. The gap is
+      // relative to what the bonds can change in J, not to J.
       const std::string status = to_string(minimum.proof_status);
       record.add("/proof",
                  {{"status", status},
@@ -208,6 +234,11 @@ namespace Debond
       // A load path has many histories, which are added up.
       const bool is_bundle = method != SolverMethod::majorise_minimise &&
                              result.majorise_history.empty();
+      // Long, short and null steps are those of bundle methods and zero for the
+      // others. The criterion is v_k of a bundle method, which is negative, or
+      // the relative residual of majorise-minimise. It is that of the method,
+      // before a refinement in extended precision; of such a refinement only
+      // the fact is known here. What a method does not have is null or 0.
       record.add("/iterations",
                  {{"total", result.iterations},
                   {"long", result.long_steps},
@@ -251,6 +282,9 @@ namespace Debond
                  const LargestValues     &largest,
                  Record                  &record)
     {
+      // Each state that the law has is a key, with 0 if no node is in it, so
+      // that studies find all of them. Held vertices are no contact nodes and
+      // have no number. The log names the states that occur.
       Json                     states = Json::object();
       std::vector<std::string> texts;
       for (unsigned int k = 0; k < verification.state_names.size(); ++k)
@@ -262,6 +296,9 @@ namespace Debond
           if (count > 0)
             texts.push_back(words(verification.name(state), " ", count));
         }
+      // Lengths and areas are in units of the scene. The opening is positive;
+      // the broken zone is a part of the contact boundary by its length or
+      // area, interpolated between the nodes, and not a number of nodes.
       record.add({{"bond_states", states},
                   {"largest_opening", verification.largest_opening},
                   {"broken_zone", verification.broken_zone},
@@ -269,6 +306,8 @@ namespace Debond
                   {"largest_displacement", largest.displacement},
                   {"largest_displacement_gradient", largest.gradient},
                   {"largest_von_mises", largest.von_mises}});
+      // With bonds that break separately a state is that along the normal.
+      // Nodes whose bonds are broken in shear are counted besides.
       if (const auto n = std::count_if(verification.nodes.begin(),
                                        verification.nodes.end(),
                                        [](const ContactNodeState &node) {
@@ -300,6 +339,9 @@ namespace Debond
     void
     report_probes(const RunResult<dim> &result, Record &record)
     {
+      // The objects are there even if they are empty, so that a script need not
+      // ask. Probes are in the log, which the scene has asked for; means over
+      // all pieces with a name would be too many lines.
       record.add("/probes", Json::object());
       for (const auto &[name, vector] : result.probes)
         report_vector("/probes/" + name, "probe " + name, vector, record);
@@ -325,6 +367,10 @@ namespace Debond
       const auto               error        = [details](const double value) {
         return details ? scientific(value, 2) : bound(value);
       };
+      // Errors are numbers without a unit, each of them relative to what its
+      // line says; the penetration is a length, the largest normal displacement
+      // beyond the gap. Without details errors are only bounded, as their
+      // digits are rounding and differ between machines.
       record.heading("Verification, from A u - f");
       record.add({{"law_violation", verification.law_violation},
                   {"penetration", verification.penetration},
@@ -359,6 +405,9 @@ namespace Debond
                       " in the energy norm, relative to the exact one");
         }
 
+      // Forces have the components x, y and z, in 2D per thickness, and act on
+      // the body. They are in the summary in any case. The log without details
+      // has the applied force alone, which follows from the scene.
       const auto report = [&](const std::string            &name,
                               const std::string            &label,
                               const dealii::Tensor<1, dim> &force,
@@ -383,6 +432,7 @@ namespace Debond
       report("tangential_reaction",
              "  tangential part",
              verification.tangential_reaction,
+             // A body that may slide has no force along the boundary.
              details && (problem.tangential_displacement !=
                            TangentialDisplacement::free ||
                          !problem.tangential_displacements.empty()));
@@ -398,6 +448,11 @@ namespace Debond
                   const LoadPathParameters        &load_path,
                   Record                          &record)
     {
+      // The key is null if the broken part never grew or shrank, and a step
+      // otherwise: the factors with which the step was solved, the factor on
+      // the way to it at which the first bond changed, and the broken part
+      // before and after. Without bonds what is open counts as broken, which
+      // the words of the log take into account.
       const std::string pointer = "/load_path/" + name;
       if (!change)
         {
@@ -442,6 +497,10 @@ namespace Debond
           record.add("/load_path/arc", nullptr);
           return;
         }
+      // The curve is followed in the direction of its first step, which sign
+      // makes the positive one. `start` is the state after the last step in
+      // which the factor advanced; the states behind it belong to a way back.
+      // The longest such way is kept in `from` and `to`.
       const auto factor = [&](const std::size_t k) {
         return load_path.varying(arc[k].factors());
       };
@@ -492,6 +551,10 @@ namespace Debond
                   const LoadPathParameters         &load_path,
                   Record                           &record)
     {
+      // Steps are fewer than factors if the path has ended early. The factor
+      // named is the one that varies: of the loads, or of the prescribed
+      // displacements if only these do. That at which the body detaches is null
+      // if it does not.
       record.heading("Load path");
       record.add("/load_path",
                  {{"factors", path.factors},
@@ -523,6 +586,9 @@ namespace Debond
                     load_path,
                     record);
 
+      // The numbers say at how many factors a global branch was computed, at
+      // how many of these the path is above it by more than rounding, and by
+      // how much of |J| at most.
       record.add("/load_path",
                  {{"compared_with_global_branch", path.compared},
                   {"above_global_branch", path.above_global},
@@ -589,6 +655,10 @@ namespace Debond
                      const RunResult<dim>     &result,
                      Record                   &record)
     {
+      // A law without adhesion, or a scene whose bonds are nowhere, has only
+      // free nodes; then the words are about nodes that open and close. The
+      // branch counts and not the state, which of a node in contact does not
+      // say whether it has bonds.
       const std::vector<ContactNodeState> &nodes = result.verification.nodes;
       report_totals(load_path_totals(result.path.steps,
                                      static_cast<unsigned int>(
@@ -604,6 +674,7 @@ namespace Debond
       report_peak(result.peak, record);
       report_arc(result.arc, load_path, record);
 
+      // The mesh has to be fine enough for the worst step of the path.
       double size = 0.;
       for (const LoadPathStep<dim> &step : result.path.steps)
         size = std::max(size, step.state.cell_size_at_edge);
@@ -617,12 +688,17 @@ namespace Debond
   void
   report_result(const RunResult<dim> &result, Record &record)
   {
+    // The load path comes first, as what follows is about its last factor. Next
+    // is whether there is a result and how good it is, then what the result is,
+    // and at the end its verification. A body that detaches at once has no
+    // displacement, and neither states nor forces.
     const Scene<dim> &scene = *result.scene;
     if (!result.path.steps.empty())
       report_load_path(scene.parameters().load_path, result, record);
     if (!result.meshes.levels.empty())
       {
-        // Of the first mesh before.
+        // report_problem() has written these keys for the first mesh. They are
+        // replaced by those of the last one, to which everything below belongs.
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
         record.add({{"cells", scene.n_cells()},
                     {"degrees_of_freedom", unknowns.n_free_dofs()},
