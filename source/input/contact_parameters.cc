@@ -20,6 +20,7 @@ namespace Debond
   TangentialDisplacement
   tangential_named(const std::string &word)
   {
+    // The pattern of the entry has allowed the word, so that it is found.
     const auto &words = tangential_words();
     return std::find_if(words.begin(),
                         words.end(),
@@ -69,6 +70,8 @@ namespace Debond
       p.tangential_displacements,
       one_of({"fixed", "free", "bonded"}),
       "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is");
+    // Without a text shear has the stiffness along the normal, which no number
+    // could say.
     const auto none_or = [](const Pattern &number) {
       return Pattern("nothing, or " + number.description(),
                      [number](const std::string &text) {
@@ -92,6 +95,8 @@ namespace Debond
       none_or(quantity()),
       "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy and the Bond shear stiffness, so that its strength is the one that follows from these",
       "energy per area");
+    // The pattern and the reader share this function, so that what is allowed
+    // can be read. A name ends in a blank, behind which its exponent follows.
     const auto parse_mode = [](const std::string &text, double &exponent) {
       using MixedMode = ShearParameters::MixedMode;
       for (const auto &[name, mode] :

@@ -26,6 +26,12 @@ namespace Debond
     void
     check_sense(const std::string &text)
     {
+      // The text is gone through once. Letters, digits and underscores make up
+      // a name, which any other character but a blank ends. For each open
+      // bracket it is known whether the name of a function stands in front of
+      // it, since only there a comma separates arguments, and how many
+      // comparisons have followed each other. A comma or an operator between
+      // two comparisons sets that number back.
       std::vector<bool>         has_arguments; // of each bracket that is open
       std::vector<unsigned int> n_comparisons = {0}; // in each
       std::string               name;                // that ends here
@@ -90,6 +96,10 @@ namespace Debond
                 const unsigned int n_components,
                 const std::string &variables)
   {
+    // Mistakes that muParser would not find, or would find in words that help
+    // nobody, are looked for first. The sense of each component is checked
+    // before their number, so that a comma in the place of a semicolon is
+    // explained and not only counted.
     const std::vector<std::string> components =
       dealii::Utilities::split_string_list(expressions, ';');
     for (const std::string &component : components)
@@ -106,6 +116,7 @@ namespace Debond
                                   " components separated by ';', but found " +
                                   std::to_string(components.size()));
 
+    // A constant of the scene may be called pi; emplace() leaves it as it is.
     Constants all_constants = constants;
     all_constants.emplace("pi", dealii::numbers::PI);
 
@@ -130,7 +141,8 @@ namespace Debond
       }
     catch (const dealii::ExceptionBase &error)
       {
-        // Which component it is.
+        // Each component is parsed alone, so that the message names the one
+        // that is wrong; the first of them throws.
         if (n_components > 1)
           for (const std::string &component : components)
             make_function<dim>(component, constants, 1);
@@ -156,6 +168,8 @@ namespace Debond
     double
     constant_value(const std::string &expression, const Constants &constants)
     {
+      // The variable that the function needs is called _, so that x, y and z
+      // are unknown here.
       const double value =
         make_function<1>(expression, constants, 1, "_")->value({});
       if (!std::isfinite(value))
@@ -169,6 +183,9 @@ namespace Debond
   Constants
   evaluate_constants(std::map<std::string, std::string> expressions)
   {
+    // Constants may stand in any order. Each pass evaluates those whose own
+    // constants have values; one that evaluates none has met a mistake or a
+    // circle, and the message is that of one of the remaining constants.
     Constants constants;
     while (!expressions.empty())
       {
@@ -200,6 +217,9 @@ namespace Debond
   std::string
   with_values(const std::string &list, const Constants &constants)
   {
+    // What is neither a number nor an expression of constants stays as it is: a
+    // name, a word or an expression in x, on which the pattern of the entry
+    // decides.
     const auto with_value = [&constants](const std::string &item) {
       const std::string text = dealii::Utilities::trim(item);
       double            value;
@@ -223,12 +243,16 @@ namespace Debond
         std::abs(value - std::round(value)) <=
           4. * std::numeric_limits<double>::epsilon() * std::abs(value) &&
         std::abs(value) < 1e9;
+      // A number keeps the digits that were written, unless it is whole:
+      // patterns of whole numbers allow no point.
       return is_number && !is_whole ?
                item :
                item.substr(0, item.find(text)) +
                  (is_whole ? std::to_string(std::lround(value)) :
                              shortest_text(value));
     };
+    // A comma within brackets separates the arguments of a function and no
+    // items.
     std::string  result, item;
     unsigned int n_open = 0; // brackets
     for (const char c : list)

@@ -27,6 +27,10 @@ namespace Debond
   idle_constants(const std::map<std::string, double> &constants,
                  const ParameterTable                &table)
   {
+    // A constant is used if its name is a word of a text that the scene sets.
+    // In Loads/Constants its definition is such a text itself, which counts
+    // once; in the section Constants the name is in the path and not in the
+    // text.
     std::set<std::string> idle;
     for (const auto &[name, unused] : constants)
       {
@@ -49,6 +53,8 @@ namespace Debond
                               const std::set<std::string> &idle_constants,
                               ParameterTable              &table)
   {
+    // A path searches by its global branch and a single load by the solver. A
+    // geometry may use constants in DefineConstant, which only its text shows.
     const std::string method = "Solver/Method is " + to_string(p.solver.method);
     const bool is_euclidean = p.solver.method == SolverMethod::euclidean_bundle;
     const bool is_energy    = p.solver.method == SolverMethod::energy_bundle;
@@ -64,6 +70,8 @@ namespace Debond
       if (n_words(name, geometry) == 0)
         table.notes.push_back("no effect of the constant " + name +
                               ": nothing uses it");
+    // An entry counts as given if the scene sets one whose path begins like
+    // this, also that of a region or a boundary.
     const auto is_given = [&table](const std::string &beginning) {
       for (const auto &[path, unused] : table.locations())
         if (boost::starts_with(path, beginning) && table.is_set(path))
@@ -82,6 +90,9 @@ namespace Debond
       table.notes.push_back(
         "the bonds are the default ones, 69 GPa/m up to 0.002 m: is the scene "
         "in m and GPa?");
+    // Each line says when entries have no effect, why, and which they are; a
+    // path that ends in '/' is a section. They are noted and not refused,
+    // because the scene is solved in the same way without them.
     for (const auto &[is_idle, reason, entries] :
          std::vector<std::tuple<bool, std::string, std::string>>{
            {body.source != BodyParameters::Source::box,

@@ -18,6 +18,8 @@ namespace Debond
     void
     add_material_constants(const Material &material, Constants &constants)
     {
+      // An orthotropic material has no such numbers. emplace() keeps constants
+      // of the scene that have these names.
       if (material.orthotropy)
         return;
       constants.emplace("E", material.young_modulus);
@@ -31,6 +33,8 @@ namespace Debond
     const std::string constants_section = "Constants/";
     const std::string constants_list    = "Loads/Constants";
 
+    // These names have a meaning in expressions or in other entries. A longer
+    // name may begin with them.
     const std::string name_of_constant =
       "(?!([xyz]|free|true|false)\\b)[A-Za-z_]\\w*";
 
@@ -41,6 +45,9 @@ namespace Debond
     bool
     is_constant(const std::string &expression, const Constants &constants)
     {
+      // The values at two points are compared. The second one has odd
+      // coordinates, at which an expression of the place is the same as at the
+      // origin only by chance.
       const auto         force = make_function<dim>(expression, constants);
       dealii::Point<dim> elsewhere;
       for (unsigned int d = 0; d < dim; ++d)
@@ -90,6 +97,8 @@ namespace Debond
                       expression,
                       traction + "boundary of this name",
                       "force per area");
+    // These members have an entry in each scene that is printed; all other
+    // names are entries once the scene gives them.
     for (const std::string side :
          {"left", "right", "bottom", "top", "front", "back"})
       table.declare_member("Loads/Traction " + side,
@@ -146,6 +155,10 @@ namespace Debond
   Constants
   constants_of(const ParameterTable &table)
   {
+    // Constants come from a list in one entry and from the entries of a
+    // section. A name that is in both is refused, since neither comes after the
+    // other. Errors are thrown at once and not collected: without the constants
+    // each entry that uses them would be an error too.
     using dealii::Utilities::split_string_list;
     std::map<std::string, std::string> texts, entries;
     for (const std::string &item :
@@ -198,6 +211,8 @@ namespace Debond
              const std::set<std::string> &known,
              std::set<std::string>       &names)
   {
+    // Names are compared with the same blanks at their commas. Commas at both
+    // ends keep one from being found within a longer one.
     const auto spaced = [](const std::string &text) {
       return ", " +
              join(dealii::Utilities::split_string_list(text, ','), ", ") + ",";
@@ -230,6 +245,9 @@ namespace Debond
                   [](const std::string &error) {
                     return error.find("Physical Curve") != std::string::npos;
                   });
+    // A part that is set but is no boundary was refused itself and needs no
+    // second message. The words tell what the body has instead, and if the name
+    // is that of something else, what that is.
     for (const std::string &name : names)
       if (boundaries.count(name) == 0 &&
           (body.regions().count(name) > 0 || !table.is_set("Parts/" + name)))
@@ -260,6 +278,8 @@ namespace Debond
   {
     if (expression.empty())
       return;
+    // The function is made only to see whether it can be made: this parses the
+    // expression.
     try
       {
         if (dimension == 2)
@@ -281,6 +301,8 @@ namespace Debond
                  LoadParameters    &loads,
                  ParameterTable    &table)
   {
+    // The constants of the material depend on the dimension, the lambda of
+    // plane stress being that of the plane problem.
     if (dimension == 2)
       add_material_constants<2>(material, loads.constants);
     else
@@ -305,6 +327,7 @@ namespace Debond
                        load.n_components(dimension),
                        loads.constants,
                        table);
+    // A total force is spread evenly, so that it can have no place.
     for (const auto &[boundary, force] : loads.forces)
       try
         {

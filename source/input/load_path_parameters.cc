@@ -19,6 +19,9 @@ namespace Debond
     double
     rounded_to_decimals(const double number)
     {
+      // The multiples of a step have digits that come from rounding alone.
+      // Factors are printed and compared, so that they are the decimal numbers
+      // that were meant.
       return std::stod(words(std::setprecision(12), number));
     }
 
@@ -31,6 +34,10 @@ namespace Debond
           const double       step,
           const double       last)
     {
+      // The number of steps is rounded, since 0.1 and its multiples are no
+      // binary numbers; the last value has to be met within the rounding of
+      // decimals all the same. A step of 0 or in the wrong direction does not
+      // lead anywhere. The comparison is written so that NaN fails it.
       const double n = step == 0. ? -1. : std::round((last - first) / step);
       if (!(n >= 1. &&
             std::abs(first + n * step - last) <=
@@ -42,6 +49,9 @@ namespace Debond
         throw std::invalid_argument(item + " has more than " +
                                     std::to_string(most_factors) + " factors");
 
+      // The values are parts of the whole way and no sums of steps, in which
+      // rounding would add up. What is 0 but for rounding becomes 0, which is a
+      // body without loads.
       std::vector<double> values;
       for (unsigned int k = 0; k <= n; ++k)
         {
@@ -164,6 +174,10 @@ namespace Debond
     load_path.asks_for_branch    = table.is_set(branch);
     std::vector<double> &factors = load_path.factors;
     std::vector<double> &others  = load_path.displacement_factors;
+    // Factors that follow each other and are equal, such as the last one of
+    // loading and the first one of unloading, are one step. With two lists side
+    // by side each pair is a step, and a single factor in one of them stands
+    // for all.
     if (others.empty())
       factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
     else
@@ -187,6 +201,7 @@ namespace Debond
                          std::to_string(factors.size()),
                        {"Load path/Factors"});
       }
+    // The arc follows one factor, while the other one stays.
     const auto vary = [](const std::vector<double> &list) {
       return std::any_of(list.begin(), list.end(), [&](const double factor) {
         return factor != list[0];
@@ -200,6 +215,8 @@ namespace Debond
                    {"Load path/Factors", "Load path/Displacement factors"});
     if (load_path.arc && factors.empty())
       table.reject("Load path/Arc", "the scene has no load path");
+    // What is loaded has a name for the dead loads: that of its boundary, or
+    // one of two words. Names with commas are put together as in other lists.
     std::set<std::string> loaded;
     if (!loads.body_force.empty())
       loaded.insert("body force");
@@ -217,6 +234,7 @@ namespace Debond
                           "" :
                           ", but " +
                             join({loaded.begin(), loaded.end()}, ", ")));
+    // Factors that multiply nothing would give the same state again and again.
     if (vary(factors) && (supports.displacements.empty() || !others.empty()) &&
         std::includes(load_path.dead_loads.begin(),
                       load_path.dead_loads.end(),
@@ -232,6 +250,7 @@ namespace Debond
   bool
   LoadPathParameters::moves_only() const
   {
+    // If so, messages and results name the factor of the displacements.
     return !displacement_factors.empty() &&
            std::count(factors.begin(), factors.end(), factors[0]) ==
              static_cast<long>(factors.size());

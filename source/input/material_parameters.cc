@@ -34,6 +34,9 @@ namespace Debond
                    Three Orthotropy::*const numbers,
                    Material                &material)
     {
+      // Three entries have nine numbers between them and are read one after the
+      // other. As soon as one of them has numbers the material is orthotropic;
+      // if the last of them becomes empty again, it is not.
       Orthotropy own = material.orthotropy.value_or(Orthotropy());
       if (text.empty())
         own.*numbers = {};
@@ -71,6 +74,9 @@ namespace Debond
     const std::vector<Entry> &
     entries()
     {
+      // Each entry stands here once. bind_material() declares it for the whole
+      // body and for regions, and of_regions() applies it to the material of a
+      // region by the same function.
       const auto one = [](double Material::*const number) {
         return [number](Material &material, const std::string &text) {
           read_number(text, material.*number);
@@ -163,13 +169,15 @@ namespace Debond
   std::map<std::string, Material>
   MaterialParameters::of_regions() const
   {
+    // A region has the material of the whole body but for what is its own.
     std::map<std::string, Material> materials;
     for (const auto &[name, texts] : own)
       for (const auto &[region, unused] : texts)
         materials.emplace(region, everywhere);
     for (auto &[region, material] : materials)
       {
-        // In an orthotropic body.
+        // A region with a Young modulus of its own is isotropic, also in an
+        // orthotropic body.
         if (own.at("Young modulus").count(region) > 0)
           material.orthotropy.reset();
         for (const Entry &entry : entries())
@@ -185,6 +193,7 @@ namespace Debond
   bool
   MaterialParameters::expands() const
   {
+    // A region that has an entry of its own expands, whatever its number is.
     return everywhere.thermal_expansions != Three() ||
            !own.at("Thermal expansion").empty();
   }
@@ -211,6 +220,9 @@ namespace Debond
   std::string
   MaterialParameters::entry_of(const std::string &region) const
   {
+    // What makes a material impossible are several numbers together. The
+    // message is at the first entry that the region has itself, since that is
+    // where it differs from the material of the body.
     if (region.empty())
       return everywhere.orthotropy ? "Material/Young moduli" :
                                      "Material/Poisson ratio";
@@ -263,6 +275,10 @@ namespace Debond
                  const std::set<std::string> &regions,
                  ParameterTable              &table)
   {
+    // Regions that the body does not have are refused as such, and their
+    // numbers are not looked at. The isotropic numbers of an orthotropic body
+    // have no effect unless a region is isotropic, which may take its Poisson
+    // ratio from it.
     check_numbers(dimension, materials.everywhere, materials, "", table);
     if (materials.everywhere.orthotropy &&
         materials.own.at("Young modulus").empty())

@@ -21,6 +21,8 @@ namespace Debond
                             const std::string     &units,
                             ParameterTable        &table)
     {
+      // The dimension may stand further down in the scene, so that two or three
+      // numbers are allowed here. check_box() compares them with it.
       table.declare(
         path,
         join({shortest_text(variable[0]), shortest_text(variable[1])}, ", "),
@@ -145,9 +147,13 @@ namespace Debond
                    const std::string &expression,
                    const Constants   &constants)
     {
+      // An expression that compares nothing is other than 0 nearly everywhere
+      // and would contain all of the body.
       if (expression.find_first_of("<>=") == std::string::npos)
         throw std::invalid_argument("'" + dealii::Utilities::trim(expression) +
                                     "' compares nothing, as x > 0.1 does");
+      // The condition is evaluated when the mesh is made. What is thrown then
+      // names the entry, which the mesh does not know.
       return [entry, function = make_function<dim>(expression, constants, 1)](
                const dealii::Point<dim> &point) {
         try
@@ -171,6 +177,8 @@ namespace Debond
              const double       degrees,
              const Constants   &constants)
     {
+      // A cut is a coordinate and a number, perhaps with a condition behind &&,
+      // or two regions. An '=' tells which of them it is.
       Cut<dim> cut;
       cut.text                     = text;
       const std::size_t ampersands = text.find("&&");
@@ -200,6 +208,11 @@ namespace Debond
           !read_number(with_values(sides[1], constants), place))
         throw std::invalid_argument(text +
                                     ": expected a coordinate and a number");
+      // Plane and condition are those of the body before it is turned. The
+      // normal is turned with the body, and the centre of a face is turned back
+      // for the condition. A face is on the plane if all of its vertices are,
+      // but for the rounding of coordinates, which grows with their distance
+      // from the origin.
       const dealii::Tensor<2, dim> rotation = rotation_matrix<dim>(degrees);
       cut.normal = rotation * dealii::Point<dim>::unit_vector(
                                 static_cast<unsigned int>(axis));
@@ -230,6 +243,8 @@ namespace Debond
               const std::string &text,
               const Constants   &constants)
     {
+      // Another piece of the same name would make the name ambiguous wherever
+      // it stands.
       const std::set<std::string> boundaries = body.boundaries();
       if (boundaries.count(name) > 0 || body.regions().count(name) > 0)
         throw std::invalid_argument("the body has a piece of this name");
@@ -272,6 +287,8 @@ namespace Debond
                           const std::string                        &entry,
                           ParameterTable                           &table)
     {
+      // Errors of body, cuts and parts are collected, each at its entry. A
+      // mistake in one part does not hide those in others.
       const auto attempt = [&table](const std::string              &at,
                                     const std::vector<std::string> &others,
                                     const auto                     &action) {
@@ -291,6 +308,8 @@ namespace Debond
       if (!body)
         return nullptr;
       attempt("Mesh/Cuts", {"Dimension"}, [&]() {
+        // `body` is null as long as there are cuts to make, and remains so if
+        // one of them is none.
         const auto cut = std::exchange(body, nullptr);
         for (const std::string &text :
              dealii::Utilities::split_string_list(parameters.cuts, ','))
@@ -337,6 +356,9 @@ namespace Debond
             const Constants                          &constants,
             ParameterTable                           &table)
   {
+    // Errors of the body belong to the entry that the source needs. A file or a
+    // generator without a name is refused here, since there is no body to look
+    // at then.
     using Source             = BodyParameters::Source;
     const Source      source = parameters.source;
     const std::string entry  = source == Source::file      ? "Mesh/File" :
@@ -351,6 +373,8 @@ namespace Debond
                      {"Mesh/Source"});
         return nullptr;
       }
+    // The path of a file is relative to the folder of the scene, wherever the
+    // program was started.
     if (source == Source::file)
       {
         namespace fs    = std::filesystem;
@@ -361,6 +385,8 @@ namespace Debond
         table.derive(entry, fs::absolute(parameters.file).string(), entry);
       }
 
+    // Entries of another source are refused and not only noted: a scene with
+    // the name of a file and without Source = file would be solved on a box.
     const auto idle = [&table](const std::string &entries,
                                const std::string &reason) {
       table.without_effect(entries, reason, "Mesh/Source");

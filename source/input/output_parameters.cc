@@ -58,12 +58,16 @@ namespace Debond
                   OutputParameters  &output,
                   ParameterTable    &table)
   {
+    // The search continues behind the name that was put in, which may contain
+    // the placeholder itself.
     const std::string placeholder = "{scene}";
     const std::string name = std::filesystem::path(scene).stem().string();
     for (std::size_t at = output.directory.find(placeholder);
          at != std::string::npos;
          at = output.directory.find(placeholder, at + name.size()))
       output.directory.replace(at, placeholder.size(), name);
+    // These characters are for a shell, which has not seen the entry. A folder
+    // whose name is a variable would be made.
     if (output.directory.find_first_of("~$\"{") != std::string::npos)
       table.reject(
         "Output/Directory",

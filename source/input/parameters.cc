@@ -23,6 +23,8 @@ namespace Debond
   SceneTable::SceneTable(CompanionEntries *const companion)
     : companion(companion)
   {
+    // The order of these calls is that of the sections and entries in a scene
+    // that is printed.
     bind_constants(constants, *this);
     bind("Dimension", p.dimension, whole_number(2, 3), "Space dimension");
     bind_choice(
@@ -57,6 +59,9 @@ namespace Debond
   void
   SceneTable::evaluate()
   {
+    // Constants have values before those of any other entry are taken. Which of
+    // them are used is seen in the texts as they were written, which the values
+    // replace afterwards.
     p.loads.constants = body.meshing.constants = constants_of(*this);
     unused_constants = idle_constants(p.loads.constants, *this);
     take_values([this](const std::string &text) {
@@ -69,10 +74,16 @@ namespace Debond
   void
   read_scene(const std::string &scene, ParameterTable &table)
   {
-    // Output goes into folders of this name.
+    // Output goes into a folder of this name, and the name is printed to the
+    // terminal.
     const std::string name = std::filesystem::path(scene).stem().string();
     if (printable(scene) != scene || name == "." || name == "..")
       throw BadInput({scene + ": no scene may have this name"});
+    // What is no scene is refused by what it is. Read as a scene it would give
+    // an error for each line, and none of them would say that it is a mesh. A
+    // folder opens without an error but cannot be read, and a device need not
+    // end. A file in UTF-16 begins with 0xfe or 0xff, which no text in UTF-8
+    // has.
     std::error_code error;
     if (!std::filesystem::exists(scene, error))
       throw BadInput({scene + ": there is no such file"});
@@ -107,11 +118,17 @@ namespace Debond
   Parameters
   SceneTable::parameters(const std::string &scene)
   {
+    // Each step needs what those before it have completed: expressions may use
+    // constants of the material, a load path refers to loads and supports, and
+    // names are compared with those of the body. Nothing is thrown before the
+    // end, so that errors in later steps are found as well.
     const Stage stage("mesh");
     p.scene = scene;
     check_symmetry(p, *this);
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
+    // A mesh that Gmsh makes of a geometry is refused if there is no memory for
+    // its cells.
     body.meshing.memory = memory_left(p.solver.memory_limit);
     p.body =
       make_body(scene, p.dimension, body, parts, p.loads.constants, *this);
@@ -122,10 +139,15 @@ namespace Debond
     check_scene(p, *this);
     if (companion != nullptr)
       companion->check(p, *this);
+    // What has no effect depends on all other entries, also on those of the
+    // companion, and is looked for last.
     note_entries_without_effect(p, body, unused_constants, *this);
     if (!errors.empty())
       throw BadInput(errors);
 
+    // The effective scene has all entries, with what follows from others in
+    // their place, such as the whole path of a mesh: it can be run from any
+    // folder.
     p.notes = notes;
     std::ostringstream effective;
     print(effective, false);

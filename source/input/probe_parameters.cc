@@ -13,6 +13,9 @@ namespace Debond
     Probe<dim>
     make_probe(const std::string &name, const std::string &text)
     {
+      // A text that begins with neither word has to be a point. The same
+      // function checks a scene and makes its probes, so that what is accepted
+      // can be made.
       Probe<dim> probe;
       probe.name = name;
       for (const auto &[word, kind] :
@@ -52,6 +55,9 @@ namespace Debond
       for (const auto &[name, text] : probes)
         try
           {
+            // The name becomes a part of a JSON pointer, in which / and ~ have
+            // a meaning. A force is that on a boundary, while a mean may be
+            // over a region too; the message lists what may be named.
             const Probe<dim> probe = make_probe<dim>(name, text);
             if (name.find_first_of("/~\",") != std::string::npos)
               throw std::invalid_argument(

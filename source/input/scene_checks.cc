@@ -13,6 +13,9 @@ namespace Debond
     void
     check_boundaries(Parameters &p, ParameterTable &table)
     {
+      // A comma separates names in these lists, and may be a part of one. Only
+      // the body knows its names, so that they are put together here and not
+      // when the entry is read.
       const std::string clamped = "Boundary conditions/Clamped boundaries";
       const std::string contact = "Boundary conditions/Contact boundary";
       // Without a body there is an error already.
@@ -30,6 +33,8 @@ namespace Debond
             check_names(load.entry(), {load.boundary}, *p.body, table);
         }
 
+      // On a clamped side all displacements are known, and nothing remains for
+      // contact to decide.
       for (const std::string &side : p.contact_boundaries)
         if (p.clamped_boundaries.count(side) > 0)
           table.reject(contact,
@@ -61,6 +66,10 @@ namespace Debond
     {
       if (p.degree == 1)
         return;
+      // With quadratic displacements the unknowns of the contact boundary are
+      // coefficients. A bond belongs to a point of the quadrature and its
+      // opening depends on several of them, so that no single unknown tells
+      // whether it is broken.
       using Rule = ContactQuadratureParameters::Rule;
       const std::string no_bonds =
         "needs a bond for each node, which Mesh/Degree = 2 has not";
@@ -80,6 +89,8 @@ namespace Debond
     void
     check_softening(const Parameters &p, ParameterTable &table)
     {
+      // On a piece the traction at the opening p is curvature p - slope. With a
+      // slope above 0 it rises more than in proportion to the opening.
       const bool gains =
         std::any_of(p.law.pieces.begin(),
                     p.law.pieces.end(),
@@ -92,6 +103,9 @@ namespace Debond
                      {"Contact law/Law"});
       if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
         return;
+      // From here on it is about bonds that soften. Proof and arc need pieces
+      // on which the traction is a straight line, which a traction that decays
+      // does not have.
       const std::string quadratic =
         "needs a law of straight lines, not Law = exponential";
       const bool decays =
@@ -116,6 +130,8 @@ namespace Debond
     void
     check_shear(Parameters &p, ParameterTable &table)
     {
+      // Whether bonds shear anywhere depends on entries of all contact
+      // boundaries. It is found out here for everything that is read later.
       const std::string tangential = "Contact law/Tangential displacement";
       const std::string failure    = "Contact law/Bond failure";
       const std::string energy     = "Contact law/Shear fracture energy";
@@ -126,6 +142,8 @@ namespace Debond
         p.shear.is_somewhere =
           p.shear.is_somewhere ||
           tangential_named(word) == TangentialDisplacement::bonded;
+      // Entries for shear are refused and not only noted: who gives them
+      // expects bonds that bear shear.
       if (!p.shear.is_somewhere)
         {
           table.without_effect("Contact law/Bond shear stiffness, " + failure +
@@ -136,6 +154,8 @@ namespace Debond
         }
       const bool has_mode =
         p.shear.mixed_mode != ShearParameters::MixedMode::none;
+      // The energy is needed in two cases and has no meaning in all others, so
+      // that one condition finds both mistakes.
       if ((p.shear.breaks_separately || has_mode) == p.shear.energy.empty())
         table.reject(energy,
                      "goes with Bond failure = separate or a Mixed mode, which "
@@ -143,6 +163,9 @@ namespace Debond
                      {failure, mode});
       if (p.law.pieces.empty())
         return;
+      // Bonds that shear have to be springs at first, which is a straight piece
+      // through the origin. Bonds that break at once have one such piece, and a
+      // flat one behind it at most.
       const PiecewiseEnergy pieces(p.law.pieces);
       const bool            breaks_at_once =
         pieces.size() == 1 || (pieces.size() == 2 && pieces[1].is_flat());
@@ -217,6 +240,11 @@ namespace Debond
   void
   check_bonds(const Parameters &p, ParameterTable &table)
   {
+    // The laws bind these entries, but know neither the body nor the constants;
+    // names and expressions are therefore checked here, of those entries that
+    // the scene sets. The blank behind a path and an entry lets an entry match
+    // itself and those with the name of a boundary behind it, and no other one
+    // that begins like it.
     for (const auto &[path, unused] : table.locations())
       for (const std::string name : {"Bond stiffness",
                                      "Bond threshold",
@@ -240,6 +268,8 @@ namespace Debond
                                p.loads.constants,
                                table);
           }
+    // A node has a bond of its own only with nodal quadrature. For quadratic
+    // displacements check_degree() refuses the arc.
     using Rule = ContactQuadratureParameters::Rule;
     if (p.load_path.arc && p.degree == 1 && p.quadrature.rule != Rule::nodal)
       table.reject("Load path/Arc",
@@ -257,6 +287,8 @@ namespace Debond
       return;
     if (p.dimension != 2)
       table.reject("Dimension", "Symmetry = axis needs 2", {"Symmetry"});
+    // The entry Material/Hypothesis is not asked for: the material is that of
+    // the solid, which it has in plane strain.
     p.materials.everywhere.hypothesis = Material::Hypothesis::plane_strain;
   }
 
@@ -265,6 +297,9 @@ namespace Debond
   void
   check_scene(Parameters &p, ParameterTable &table)
   {
+    // Each check is made whatever those before it have found, so that the user
+    // gets all mistakes at once. reject() leaves out what only follows from an
+    // entry that is wrong itself.
     check_solver(p.solver, table);
     check_boundaries(p, table);
     // Without a body there is an error already.

@@ -162,6 +162,9 @@ namespace Debond
         positive_number(),
         "Wall time after which the proof ends with the gap that is left",
         "seconds");
+      // The number of threads is a word or a number, and is known when the
+      // scene is read: one for each core that the system reports, or one if it
+      // reports none.
       table.declare(
         section + "Threads",
         "available",
@@ -230,6 +233,7 @@ namespace Debond
                LinearSolver::direct,
                LinearSolver::multigrid}),
       "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; what needs the contact normals alone (energy bundle, Search = full, Prove, an arc, bodies that only bonds hold) takes a solution for each of them then; automatic chooses by size and memory. euclidean bundle needs none");
+    // The limit of 0 bytes stands for what the system can give.
     table.declare(
       "Solver/Memory limit",
       "available",
@@ -259,6 +263,8 @@ namespace Debond
   void
   check_solver(const SolverParameters &solver, ParameterTable &table)
   {
+    // Patterns look at one number. That one exceeds another can be checked only
+    // when both are known.
     if (!(solver.bundle.m_R > solver.bundle.m_L))
       table.reject("Solver/Euclidean bundle/Slope fraction",
                    words("Slope fraction m_R = ",

@@ -53,6 +53,9 @@ namespace Debond
 
   DisplacementText::DisplacementText(const std::string &text)
   {
+    // Free components are no expressions. 0 stands for them, so that all
+    // components can be parsed as one function, and the flags say which of its
+    // values are prescribed.
     for (const std::string &word :
          dealii::Utilities::split_string_list(text, ';'))
       {
@@ -75,6 +78,8 @@ namespace Debond
                 supports.rollers,
                 body,
                 table);
+    // A displacement that prescribes nothing is refused: a support was meant
+    // that is not there.
     for (const auto &[name, text] : supports.displacements)
       {
         const std::string path = "Boundary conditions/Displacement " + name;
@@ -89,6 +94,9 @@ namespace Debond
                          }))
           table.reject(path, "all components are free: leave it out");
       }
+    // Gap and normal have a text for the whole contact boundary and others for
+    // boundaries or parts of it. Either of them may be wrong without the other
+    // one.
     const auto check_all = [&](const std::string                        &entry,
                                const std::string                        &text,
                                const std::map<std::string, std::string> &own,
