@@ -80,10 +80,10 @@ namespace Debond
     if (printable(scene) != scene || name == "." || name == "..")
       throw BadInput({scene + ": no scene may have this name"});
     // What is no scene is refused by what it is. Read as a scene it would give
-    // an error for each line, and none of them would say that it is a mesh. A
-    // folder opens without an error but cannot be read, and a device need not
-    // end. A file in UTF-16 begins with 0xfe or 0xff, which no text in UTF-8
-    // has.
+    // errors of lines that cannot be read, and none of them would say that it
+    // is a mesh. A folder opens without an error but cannot be read, and a
+    // device need not end. A file in UTF-16 begins with 0xfe or 0xff, which no
+    // text in UTF-8 has.
     std::error_code error;
     if (!std::filesystem::exists(scene, error))
       throw BadInput({scene + ": there is no such file"});
@@ -146,8 +146,8 @@ namespace Debond
       throw BadInput(errors);
 
     // The effective scene has all entries, with what follows from others in
-    // their place, such as the whole path of a mesh: it can be run from any
-    // folder.
+    // their place, such as the whole path of a mesh, so that it may lie in
+    // another folder than the scene.
     p.notes = notes;
     std::ostringstream effective;
     print(effective, false);

@@ -17,6 +17,9 @@ namespace Debond
                           std::string              &start,
                           ParameterTable           &table)
     {
+      // The descriptions have the symbols of the paper, whose algorithm this
+      // is. The tolerance at which it stops is an energy in the units of the
+      // scene, while those of the other methods are relative.
       const std::string section = "Solver/Euclidean bundle/";
       table.bind(section + "Proximal weight",
                  bundle.u,
@@ -81,6 +84,8 @@ namespace Debond
     void
     bind_energy_bundle(ProximalBundleParameters &bundle, ParameterTable &table)
     {
+      // The energy norm takes the place of the proximal weight. Fractions of
+      // descent and the line search have no entries and keep their defaults.
       const std::string section = "Solver/Energy bundle/";
       table.bind(
         section + "Stop tolerance",
@@ -198,6 +203,8 @@ namespace Debond
   std::string
   to_string(const SolverMethod method)
   {
+    // The names are in the order of the enumeration. Scenes, the log and
+    // summary.json have them.
     static const std::array<const char *, 4> names = {
       {"automatic", "euclidean bundle", "energy bundle", "majorise minimise"}};
     return names[static_cast<std::size_t>(method)];

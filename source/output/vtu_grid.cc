@@ -18,7 +18,8 @@ namespace Debond
 
 
 
-    /// Appends what is left of a block, and returns how much that is.
+    /// Appends a block in its compressed form, and returns how many bytes that
+    /// has.
     std::size_t
     deflate_block(const Bytef *const block,
                   const std::size_t  n_bytes,
@@ -52,8 +53,8 @@ namespace Debond
 
 
     /// Writes the number of blocks, their size, that of the last one if it is
-    /// smaller, and what is left of each, then the blocks, both in base64,
-    /// which all readers know.
+    /// smaller, and the compressed size of each, then the blocks, both in
+    /// base64, which all readers know.
     void
     compress(const Bytef *const numbers,
              const std::size_t  n_bytes,

@@ -224,7 +224,7 @@ namespace Debond
 
 
 
-    /// Looks for a rigid motion that shows that a body comes off. Returns what
+    /// Looks for a rigid motion that shows that a body detaches. Returns what
     /// is wrong if there is none.
     template <int dim>
     std::string

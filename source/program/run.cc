@@ -25,8 +25,8 @@ namespace Debond
     RunState<dim>
     earlier_state(const Parameters &parameters, std::ostream &out)
     {
-      // That there is no state is no error: the same command then begins a run
-      // and continues it, whatever became of it before.
+      // A missing state is no error, so that the same command begins a run and
+      // continues one that was killed.
       const std::string file = state_file(parameters.output.directory);
       if (!std::filesystem::exists(file))
         {

@@ -189,7 +189,7 @@ namespace Debond
 
 
 
-    /// Says whether a run may go on with another value.
+    /// Says whether a run may continue with another value.
     bool
     may_differ(const std::string &entry)
     {
