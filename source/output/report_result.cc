@@ -632,7 +632,9 @@ namespace Debond
                   " as work for a unit of the displacement factor, at ",
                   peak->step.displacement_factor,
                   ", known to ",
-                  bound(peak->known_to));
+                  std::setprecision(2),
+                  100. * peak->known_to,
+                  " %");
       const std::string prefix = "reaction_";
       for (const auto &[name, force] : state.vectors)
         if (name.rfind(prefix, 0) == 0)

@@ -372,16 +372,26 @@ namespace Debond
         return std::abs(step.state.unit_displacement_work);
       }
 
-      /// A force that grows with the stiffness from the state @p before may
-      /// become this on the way to @p last. On the way back it becomes smaller
-      /// first.
+      /// What the force may become on the way from the state @p before to @p
+      /// last: as much more as with the largest stiffness so far. On the way
+      /// back it becomes smaller first. Bonds that do not heal give no more
+      /// than they have left, and a body without other loads, whose force is
+      /// proportional to the factor as long as no more of them break, no more
+      /// than its secant stiffness.
       double
       bound_of_force(const LoadPathStep<dim> &before,
                      const LoadFactors        last) const
       {
-        const double way = last.displacements - before.displacement_factor;
+        const double way   = last.displacements - before.displacement_factor;
+        double       slope = progress.stiffness;
+        if (!parameters.bonds_heal && before.displacement_factor != 0. &&
+            !scene.problem().unknowns().has_gap() &&
+            scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
+          slope = std::min(slope,
+                           before.state.unit_displacement_work /
+                             before.displacement_factor);
         return (way < 0. ? -1. : 1.) * before.state.unit_displacement_work +
-               progress.stiffness * std::abs(way);
+               slope * std::abs(way);
       }
 
       static LoadFactors
