@@ -330,11 +330,7 @@ namespace Debond
             {
               PathFollower inside    = from(begun.first, begun.u, begun.memory);
               const LoadFactors last = steps[begun.first + 1].factors();
-              if (inside.walk(middle(steps[begun.first].factors(), last),
-                              parameters.resolve,
-                              most_halvings,
-                              peak))
-                inside.walk(last, parameters.resolve, most_halvings, peak);
+              inside.walk(last, parameters.resolve, most_halvings, peak);
             }
         answer.peak          = peak;
         result.parts["peak"] = timer.wall_time();
@@ -492,27 +488,23 @@ namespace Debond
            const unsigned int halvings,
            Peak              &peak)
       {
-        const PathProgress<dim> begun = progress;
-        const bool has_state = solve(last, [](const auto &, const auto &) {}) &&
-                               steps.back().message.empty();
-        if (has_state)
-          {
-            progress.stiffness = stiffness_of_last_step();
-            if (force(steps.back()) > force(peak.step))
-              peak.step = steps.back();
-          }
-        const double excess =
-          bound_of_force(begun.steps.back(), last) / force(peak.step) - 1.;
-        if (halvings == 0 || excess <= resolve || interruption.requested())
-          {
-            peak.known_to = std::max(peak.known_to, excess);
-            return has_state;
-          }
-        const LoadFactors half = middle(begun.steps.back().factors(), last);
-        progress               = begun;
-        solver->start_from(progress.u);
-        return walk(half, resolve, halvings - 1, peak) &&
-               walk(last, resolve, halvings - 1, peak);
+        const LoadPathStep<dim> before = steps.back();
+        const double            excess =
+          bound_of_force(before, last) / force(peak.step) - 1.;
+        if (halvings > 0 && excess > resolve && !interruption.requested())
+          return walk(middle(before.factors(), last),
+                      resolve,
+                      halvings - 1,
+                      peak) &&
+                 walk(last, resolve, halvings - 1, peak);
+        peak.known_to = std::max(peak.known_to, excess);
+        if (!solve(last, [](const auto &, const auto &) {}) ||
+            !steps.back().message.empty())
+          return false;
+        progress.stiffness = stiffness_of_last_step();
+        if (force(steps.back()) > force(peak.step))
+          peak.step = steps.back();
+        return true;
       }
 
       /// Made when it is needed: not if all steps are done, and there is no
