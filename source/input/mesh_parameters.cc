@@ -182,17 +182,23 @@ namespace Debond
       Cut<dim> cut;
       cut.text                     = text;
       const std::size_t ampersands = text.find("&&");
-      const auto        sides      = dealii::Utilities::split_string_list(
-        text.substr(0, ampersands),
-        text.find('=') == std::string::npos ? '|' : '=');
+      const std::string place_text = text.substr(0, ampersands);
+      const bool        is_plane   = place_text.find('=') != std::string::npos;
+      const auto        sides =
+        dealii::Utilities::split_string_list(place_text, is_plane ? '=' : '|');
       if (sides.size() != 2)
         throw std::invalid_argument(
           text + " is neither a line of the mesh, as y = 2 or y = 2 && x < 60, "
                  "nor two regions, as core | ring");
       const std::size_t axis = std::string("xyz").substr(0, dim).find(sides[0]);
       double            place = 0.;
-      if (text.find('=') == std::string::npos)
+      if (!is_plane)
         {
+          if (ampersands != std::string::npos)
+            throw std::invalid_argument(
+              text +
+              ": the cut between two regions is where they meet, without "
+              "a condition");
           cut.low  = sides[0];
           cut.high = sides[1];
           for (const std::string &side : sides)

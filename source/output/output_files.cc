@@ -29,22 +29,22 @@ namespace Debond
 
 
 
-  std::vector<std::string>
+  void
   write_files(const std::vector<OutputFile> &files,
-              const std::string             &directory)
+              const std::string             &directory,
+              std::vector<std::string>      &written)
   {
     // The files come in the order of the list, each of them whole or not at
     // all. All ranks decide alike which ones are wanted, since each file is
     // written by all of them together.
-    std::vector<std::string> written;
     for (const OutputFile &file : files)
       if (file.is_wanted())
         {
-          written.push_back(
-            (std::filesystem::path(directory) / file.name).string());
-          file.write(written.back());
+          const std::string path =
+            (std::filesystem::path(directory) / file.name).string();
+          file.write(path);
+          written.push_back(path);
         }
-    return written;
   }
 
 

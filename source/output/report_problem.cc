@@ -166,6 +166,31 @@ namespace Debond
 
 
   template <int dim>
+  unsigned int
+  report_sizes(const Answer<dim> &answer, Record &record)
+  {
+    const Scene<dim>        &scene   = *answer.scene;
+    const ProblemParameters &problem = scene.parameters();
+    const unsigned int       n_nodes =
+      static_cast<unsigned int>(scene.contact_boundary().nodes.size());
+    // The paper counts the tangential displacements of the contact nodes,
+    // although they are fixed: 710 on its mesh 40x4.
+    const bool is_fixed =
+      problem.tangential_displacement == TangentialDisplacement::fixed &&
+      problem.tangential_displacements.empty();
+    const unsigned int n_dofs_paper =
+      scene.n_unknowns() + (is_fixed ? (dim - 1) * n_nodes : 0);
+    record.add({{"cells", scene.n_cells()},
+                {"degrees_of_freedom", scene.n_unknowns()},
+                {"degrees_of_freedom_paper", n_dofs_paper},
+                {"contact_nodes", n_nodes},
+                {"linear_solver", to_string(answer.choice.linear_solver)}});
+    return n_dofs_paper;
+  }
+
+
+
+  template <int dim>
   void
   report_problem(const Answer<dim> &begun,
                  const double       bundle_weight,
@@ -181,27 +206,15 @@ namespace Debond
     const unsigned int n_dofs = scene.n_unknowns();
     const unsigned int n_nodes =
       static_cast<unsigned int>(scene.contact_boundary().nodes.size());
-    // The paper counts the tangential displacements of the contact nodes,
-    // although they are fixed: 710 on its mesh 40x4.
-    const bool is_fixed =
-      problem.tangential_displacement == TangentialDisplacement::fixed &&
-      problem.tangential_displacements.empty();
-    const unsigned int n_dofs_paper =
-      n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
-    // These are keys of summary.json for studies. With refined meshes they are
-    // those of the first one; report_result() replaces the numbers of cells,
-    // unknowns and contact nodes.
+    // These are keys of summary.json for studies. With refined meshes what
+    // report_sizes() adds is that of the last mesh in the end.
+    const unsigned int n_dofs_paper = report_sizes(begun, record);
     record.add(
       {{"scene", problem.scene},
        {"dimension", dim},
-       {"cells", scene.n_cells()},
        {"symmetry", problem.symmetry == Symmetry::axis ? "axis" : "none"},
        {"degree", problem.degree},
-       {"degrees_of_freedom", n_dofs},
-       {"degrees_of_freedom_paper", n_dofs_paper},
-       {"contact_nodes", n_nodes},
-       {"method", to_string(choice.method)},
-       {"linear_solver", to_string(choice.linear_solver)}});
+       {"method", to_string(choice.method)}});
     if (record.has_details())
       record.line("scene", problem.scene);
     // The extents show a scale or a unit that is wrong. A rank knows the
@@ -225,7 +238,7 @@ namespace Debond
                 problem.degree == 2 ? ", quadratic displacements" : "");
     record.line("unknowns",
                 n_dofs,
-                is_fixed ?
+                n_dofs_paper != n_dofs ?
                   words(", with fixed tangential ones ", n_dofs_paper) :
                   "");
     report_data(problem, n_nodes, record);
@@ -351,6 +364,7 @@ namespace Debond
 
 
 
+  DEBOND_INSTANTIATE(report_sizes);
   DEBOND_INSTANTIATE(report_problem);
   DEBOND_INSTANTIATE(report_cost);
 } // namespace Debond

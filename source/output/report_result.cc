@@ -697,17 +697,8 @@ namespace Debond
     const Scene<dim> &scene = *result.scene;
     if (!result.path.steps.empty())
       report_load_path(scene.parameters().load_path, result, record);
-    if (!result.meshes.levels.empty())
-      {
-        // report_problem() has written these keys for the first mesh. They are
-        // replaced by those of the last one, to which everything below belongs.
-        const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
-        record.add({{"cells", scene.n_cells()},
-                    {"degrees_of_freedom", unknowns.n_free_dofs()},
-                    {"contact_nodes",
-                     static_cast<unsigned int>(
-                       unknowns.contact().boundary().nodes.size())}});
-      }
+    // With refined meshes the sizes so far are those of the first one.
+    report_sizes(result, record);
     report_status(result, record);
     if (result.coming_off)
       report_coming_off(*result.coming_off, record);

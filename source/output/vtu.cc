@@ -88,20 +88,23 @@ namespace Debond
       // anywhere is therefore asked of all ranks. The field of the stress
       // across the plane is for plane strain, which is also the hypothesis of a
       // body of revolution; there it is the stress around the axis.
-      using Stress               = dealii::SymmetricTensor<2, dim>;
-      const auto    &dofs        = problem.unknowns().dof_handler();
-      const auto    &first       = *dofs.begin_active();
-      const auto    &fields      = problem.fields();
-      const Symmetry symmetry    = problem.unknowns().symmetry();
-      bool           has_regions = false, has_axes = false;
+      using Stress         = dealii::SymmetricTensor<2, dim>;
+      const auto    &dofs  = problem.unknowns().dof_handler();
+      unsigned int   least = dealii::numbers::invalid_material_id, most = 0;
+      const auto    &fields   = problem.fields();
+      const Symmetry symmetry = problem.unknowns().symmetry();
+      bool           has_axes = false;
       for (const auto &cell : dofs.active_cell_iterators())
         {
-          has_regions |= cell->material_id() != first.material_id();
+          least = std::min<unsigned int>(least, cell->material_id());
+          most  = std::max<unsigned int>(most, cell->material_id());
           has_axes |= fields.material(cell).orthotropy &&
                       fields.material(cell).axis_angle != 0.;
         }
-      has_regions = any_rank(has_regions);
-      has_axes    = any_rank(has_axes);
+      const MPI_Comm ranks       = problem.unknowns().communicator();
+      const bool     has_regions = dealii::Utilities::MPI::min(least, ranks) <
+                               dealii::Utilities::MPI::max(most, ranks);
+      has_axes = any_rank(has_axes);
       const bool has_zz =
         dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
                       Material::Hypothesis::plane_strain;
@@ -202,7 +205,8 @@ namespace Debond
        [](const auto &node, const double) { return node.bond_threshold; }},
       {"damage", [](const auto &node, const double) { return node.damage; }},
       {"initial_gap",
-       [](const auto &node, const double) { return node.u_nu - node.s; }}};
+       [](const auto &node, const double) { return node.u_nu - node.s; },
+       true}};
 
     /// With bonds that shear, besides.
     const std::vector<ContactScalar> shear_scalars = {

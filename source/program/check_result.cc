@@ -203,7 +203,7 @@ namespace Debond
           // On a single mesh with linear displacements all contact nodes are
           // vertices of the first mesh. Refinement and quadratic displacements
           // add nodes on the flat sides, which have the normals of these.
-          if ((!result.meshes.levels.empty() ||
+          if ((result.meshes.levels.size() > 1 ||
                scene.problem().unknowns().degree() == 2) &&
               is_curved(scene.contact_boundary()))
             result.notes.push_back(

@@ -67,8 +67,6 @@ namespace Debond
                                           parameters.accuracy,
                                           parameters.solver.start,
                                           earlier.meshes.divisions);
-      begun.meshes = earlier.meshes;
-      begun.path   = earlier.path;
       // 0 is the number without an earlier run. The entries of a scene may be
       // the same and its mesh another one, if the file of the mesh has changed.
       // The displacements of the state would belong to other nodes then.
@@ -77,9 +75,11 @@ namespace Debond
                         " is of another mesh; run without --restart"});
       // Displacements in the file have the order of one rank, here they get
       // that of these ranks.
-      for (DofVector *const u : {&begun.meshes.start, &begun.path.u})
-        if (u->size() > 0)
-          *u = from_serial_order(begun.scene->problem().unknowns(), *u);
+      RunState<dim> state = earlier;
+      for (DofVector *const u : displacements_of(state))
+        *u = from_serial_order(begun.scene->problem().unknowns(), *u);
+      begun.meshes = state.meshes;
+      begun.path   = state.path;
       choose_linear_solver(*begun.scene, parameters.solver, begun.choice);
       check_supports_of_method(begun.choice, parameters.solver, *begun.scene);
       check_exact_displacement(parameters.verification.exact_displacement,

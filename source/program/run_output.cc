@@ -42,6 +42,7 @@ namespace Debond
     // scene no longer asks for would otherwise look like one of its results.
     // The files of steps stay if the run continues after steps.
     remove_files(files(scene, {}), output.directory);
+    remove_files({{"summary.json", {}, {}}}, output.directory);
     if (begun == nullptr || begun->path.steps.empty())
       path_output->remove_steps();
     // An old state would otherwise be taken up by a later --restart that means
@@ -102,9 +103,8 @@ namespace Debond
                            answer.meshes,
                            answer.path};
     // Displacements in the file have the order of one rank.
-    for (DofVector *const u : {&state.meshes.start, &state.path.u})
-      if (u->size() > 0)
-        *u = in_serial_order(answer.scene->problem().unknowns(), *u);
+    for (DofVector *const u : displacements_of(state))
+      *u = in_serial_order(answer.scene->problem().unknowns(), *u);
     attempt([&]() {
       write_state(state, state_file(output.directory));
       has_state = true;
@@ -122,6 +122,8 @@ namespace Debond
     // what is not there.
     if (!lock)
       return;
+    remove_files(path_output->files({}, {}), output.directory);
+    path_output->remove_steps();
     written.push_back(state_file(output.directory));
     for (const std::string &file : written)
       std::filesystem::remove(file);
@@ -138,8 +140,7 @@ namespace Debond
     // complete and stay, but the log does not list them, there is no summary
     // then, and the exit code is 5.
     return attempt([&]() {
-      append(write_files(files(*result.scene, result), output.directory),
-             written);
+      write_files(files(*result.scene, result), output.directory, written);
     });
   }
 

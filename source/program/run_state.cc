@@ -214,6 +214,24 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<DofVector *>
+  displacements_of(RunState<dim> &state)
+  {
+    std::vector<DofVector *> all = {&state.meshes.start, &state.path.u};
+    for (UnresolvedStep &step : state.path.unresolved)
+      all.push_back(&step.u);
+    all.erase(std::remove_if(all.begin(),
+                             all.end(),
+                             [](const DofVector *const u) {
+                               return u->size() == 0;
+                             }),
+              all.end());
+    return all;
+  }
+
+
+
+  template <int dim>
   std::uint64_t
   mesh_checksum(const Scene<dim> &scene)
   {
@@ -291,6 +309,7 @@ namespace Debond
 
 
 
+  DEBOND_INSTANTIATE(displacements_of);
   DEBOND_INSTANTIATE(mesh_checksum);
   DEBOND_INSTANTIATE(write_state);
   DEBOND_INSTANTIATE(read_state);

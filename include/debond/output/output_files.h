@@ -26,11 +26,12 @@ namespace Debond
   remove_files(const std::vector<OutputFile> &files,
                const std::string             &directory);
 
-  /// Writes those that are wanted and returns the paths. Throws
+  /// Writes those that are wanted and adds their paths to @p written. Throws
   /// std::runtime_error as their functions do.
-  std::vector<std::string>
+  void
   write_files(const std::vector<OutputFile> &files,
-              const std::string             &directory);
+              const std::string             &directory,
+              std::vector<std::string>      &written);
 
 
 

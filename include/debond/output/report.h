@@ -15,6 +15,12 @@ namespace Debond
                  const double       bundle_weight,
                  Record            &record);
 
+  /// Adds the sizes of the mesh and its linear solver to the summary. Returns
+  /// the number of unknowns as the paper counts them.
+  template <int dim>
+  unsigned int
+  report_sizes(const Answer<dim> &answer, Record &record);
+
   /// Reports a mesh of a loop that refines, as the @p number-th one, when it is
   /// done.
   void

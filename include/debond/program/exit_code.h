@@ -10,7 +10,7 @@ namespace Debond
   {
     success        = 0,
     internal_error = 1,  ///< a fault of the program
-    bad_input      = 2,  ///< command line or scene; nothing was written
+    bad_input      = 2,  ///< command line or scene; mostly nothing was written
     not_converged  = 3,  ///< the stop criterion or the verification was not met
     interrupted    = 4,  ///< by SIGINT or SIGTERM, the last iterate is written
     output_not_saved = 5 ///< a directory or a file could not be written

@@ -23,6 +23,11 @@ namespace Debond
     PathProgress<dim> path; ///< on the last of them
   };
 
+  /// The displacements in the state that are not empty.
+  template <int dim>
+  std::vector<DofVector *>
+  displacements_of(RunState<dim> &state);
+
   /// Returns a fingerprint of vertices, cells, boundary and material ids, by
   /// which a mesh is known again on any number of ranks. To be called by all of
   /// them.
