@@ -18,7 +18,7 @@ NO_PICTURES = ["Output/Body VTU=false", "Output/Contact VTU=false"]
 SECTIONS = {
     "Mesh": "Lengths|Cells|Cuts|Degree|Source|File|Rotation|Generator|Arguments|Refinements|Scale",
     "Material": "Young mod|Poisson ratio|Shear moduli|Axis angle|Thermal expansion|Hypothesis",
-    "Load path": "Factors|Displacement factors|Arc|Bonds heal|Global branch|Dead loads",
+    "Load path": "Factors|Displacement factors|Arc|Bonds heal|Global branch|Dead loads|Resolve",
     "Contact law": "Law|Quadrature|Tangential|Bond |Fracture|Shear fracture|Mixed mode|Curve|"
                    "Initial gap|Traction factor",
     "Boundary conditions": "Clamped|Roller|Contact boundary|Foundation normal|Displacement ",

@@ -98,6 +98,28 @@ def check_solid():
         ("box", "Lengths=0.4, 0.04, 0.05", "Cells=6, 2, 1"), *odd]])
 
 
+def check_sides():
+    """Of a mesh of two triangles each has two sides on the boundary: the force of a side is
+    that of its own nodes, which no other support holds but at corners."""
+    points, faces, _ = msh.box((1, 1), (1., 1.))
+    place = {point: i for i, point in enumerate(points)}
+    at = [place[0., 0.], place[1., 0.], place[1., 1.], place[0., 1.]]
+    cells = [((7,), (at[0], at[1], at[3])), ((7,), (at[1], at[2], at[3]))]
+    write_mesh("two", points, faces, cells)
+    result = solve(MM, *file("two"), "Contact boundary=", "Clamped boundaries=left", "Traction top=",
+                   "Displacement bottom=free; if(x > 0.5, 0.01, 0)", "Traction right=1; 2",
+                   "Probes/grip=force left")
+    for one, other in zip(result["probes"]["grip"], result["reactions"]["left"], strict=True):
+        close("the force of a side", one, other, 1e-12, 1.)
+    # A crack whose front comes to sides that move: a translation opens nothing.
+    result = solve("Dimension=3", "Lengths=4, 2, 1", "Cells=8, 4, 2", "Cuts=y = 1 && x < 2",
+                   "Clamped boundaries=", "Contact boundary=cut_1", "Traction top=",
+                   *(f"Displacement {side}=free; 0.01; free" for side in ("front", "back", "right")),
+                   "Displacement left=0; 0.01; 0", "Young modulus=100", "Bond stiffness=10")
+    check("a translation takes no energy and opens nothing", abs(result["functional"]) < 1e-20
+          and result["broken_zone"] == 0. and result["largest_opening"] < 1e-15, result["functional"])
+
+
 def check_temperature():
     """Half of a change, as such and by a load path."""
     stresses = [solve(MM, "Traction top=", "Thermal expansion=1e-5", *entries)["largest_von_mises"]

@@ -191,6 +191,30 @@ def check_moved_columns(dim, quadrature):
                        "Global branch=prove")
 
 
+def check_peak():
+    """The force of the column rises to a M times its area, at the displacement of the snap,
+    between factors that are far from it. On the way back it is no larger."""
+    scenes.section("The largest force")
+    for dim, resolve, factors, *others in (
+            (2, 0.01, "0, 0.025, 0.1"), (2, 0.001, "0, 0.1, 0"), (3, 0.01, "0:0.011:0.099"),
+            (2, 0.01, "0, 0.1", "Bonds heal=true"), (2, 0.01, "0, 0.1", "Degree=2", "Quadrature=gauss 3"),
+            (2, 0.01, "0.01, 0.03"), (2, 0.01, "0, -0.01, 0.1", "Linear solver=multigrid")):
+        peak = column(dim, *moved(dim), "Displacement factors=" + factors, "Bonds heal=false",
+                      f"Resolve={resolve}", *others)["load_path"]["peak"]
+        snap, force = M * (1. + a / k), a * M * area_of(dim)
+        if factors == "0.01, 0.03":
+            snap, force = 0.03, force * 0.03 / snap
+        found = peak["unit_displacement_work"]
+        check("within what was asked for", (1. - resolve) * force <= found <= force * (1. + 1e-9)
+              and peak["known_to"] <= resolve and found * (1. + peak["known_to"])
+              >= force * (1. - 1e-9), peak)
+        check("at the factor that it belongs to", abs(peak["displacement_factor"] / snap - found
+              / force) < 1e-9, peak)
+        close("the reaction", peak["reactions"]["top"][1], found, 1e-9, force)
+    check("none is sought", column(2, *moved(2), "Displacement factors=0, 0.1", "Resolve=0")
+          ["load_path"]["peak"] is None)
+
+
 def check_pulled_and_moved(dim):
     """By t on its bottom and d of its top, each with factors of its own, of which some come
     twice: as by t + k d alone, but for k d^2 / 2. Loads may also be dead."""

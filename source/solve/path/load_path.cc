@@ -27,7 +27,7 @@ namespace Debond
     constexpr double least_of_step = 1e7, of_step = 4000.;
 
     /// A step is halved so often for the largest force.
-    constexpr unsigned int most_halvings = 10;
+    constexpr unsigned int most_halvings = 16;
 
     /// The part of a step that tells the stiffness at its beginning.
     constexpr double part_for_stiffness = 1e-3;
@@ -332,7 +332,12 @@ namespace Debond
               const LoadFactors last = steps[begun.first + 1].factors();
               inside.walk(last, parameters.resolve, most_halvings, peak);
             }
-        answer.peak          = peak;
+        // Steps that were not looked into are bounded by the part that is asked
+        // for.
+        if (force(peak.step) > 0.)
+          answer.peak = {peak.step,
+                         std::max(parameters.resolve,
+                                  peak.bound / force(peak.step) - 1.)};
         result.parts["peak"] = timer.wall_time();
       }
 
@@ -359,7 +364,13 @@ namespace Debond
       }
 
     private:
-      using Peak = LoadPathPeak<dim>;
+      /// The largest force so far, and a bound of it inside of the steps that
+      /// were done for it.
+      struct Peak
+      {
+        LoadPathStep<dim> step;
+        double            bound;
+      };
 
       /// The force that belongs to the displacement factor, whatever its sign.
       static double
@@ -488,23 +499,45 @@ namespace Debond
            const unsigned int halvings,
            Peak              &peak)
       {
-        const LoadPathStep<dim> before = steps.back();
-        const double            excess =
-          bound_of_force(before, last) / force(peak.step) - 1.;
-        if (halvings > 0 && excess > resolve && !interruption.requested())
-          return walk(middle(before.factors(), last),
-                      resolve,
-                      halvings - 1,
-                      peak) &&
-                 walk(last, resolve, halvings - 1, peak);
-        peak.known_to = std::max(peak.known_to, excess);
-        if (!solve(last, [](const auto &, const auto &) {}) ||
-            !steps.back().message.empty())
-          return false;
-        progress.stiffness = stiffness_of_last_step();
-        if (force(steps.back()) > force(peak.step))
-          peak.step = steps.back();
-        return true;
+        const PathProgress<dim> begun = progress;
+        const double            bound = bound_of_force(steps.back(), last);
+        const auto              is_resolved = [&]() {
+          return bound <= (1. + resolve) * force(peak.step);
+        };
+        const bool may_halve = halvings > 0 && !interruption.requested();
+        if (may_halve && !is_resolved() && bound <= 2. * force(peak.step))
+          return walk_halves(last, resolve, halvings, peak);
+        // The whole step, which tells most as long as no force is known that
+        // comes near to the bound.
+        const bool has_state = solve(last, [](const auto &, const auto &) {}) &&
+                               steps.back().message.empty();
+        if (has_state)
+          {
+            progress.stiffness = stiffness_of_last_step();
+            if (force(steps.back()) > force(peak.step))
+              peak.step = steps.back();
+          }
+        if (may_halve && !is_resolved())
+          {
+            progress = begun;
+            solver->start_from(progress.u);
+            return walk_halves(last, resolve, halvings, peak);
+          }
+        peak.bound = std::max(peak.bound, bound);
+        return has_state;
+      }
+
+      bool
+      walk_halves(const LoadFactors  last,
+                  const double       resolve,
+                  const unsigned int halvings,
+                  Peak              &peak)
+      {
+        return walk(middle(steps.back().factors(), last),
+                    resolve,
+                    halvings - 1,
+                    peak) &&
+               walk(last, resolve, halvings - 1, peak);
       }
 
       /// Made when it is needed: not if all steps are done, and there is no
