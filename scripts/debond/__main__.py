@@ -4,7 +4,7 @@
 import importlib.util
 import sys
 
-MODULES = {"study": "report", "picture": "picture", "paper": "paper",
+MODULES = {"study": "report", "picture": "picture", "fit": "fit", "paper": "paper",
            "benchmarks": "benchmarks", "published": "published"}
 # The last three need the source tree, and are not installed.
 MODULES = {name: module for name, module in MODULES.items()

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Entries of a scene from a measured curve by least squares, see doc/guide/fit.md."""
+
+import argparse
+import dataclasses
+import json
+import os
+import sys
+
+import numpy
+
+from . import cases, prm, runs
+from .curves import read_measured
+from .fit_model import Model, Parameter
+from .runs import Error
+
+CURVE = "unit_displacement_work over displacement_factor"
+CORRELATED = 0.95  # more is told
+NEAR = 0.01        # a value is at a bound, by the range between both
+PART = 0.8         # of what is known of a parameter, whose place is told
+
+
+@dataclasses.dataclass
+class Fit:
+    """What was found: `curve` are the measured x and the fitted y there, `computed` the
+    curve of all load factors, `sensitivities` d y / d ln(value), `known` the part of x
+    that PART of what is known of a value comes from (None if it is not known)."""
+
+    names: list
+    values: numpy.ndarray
+    standard_errors: numpy.ndarray
+    correlation: numpy.ndarray
+    residuals: numpy.ndarray
+    curve: tuple
+    computed: tuple
+    sensitivities: numpy.ndarray
+    known: list
+    warnings: list
+    converged: bool
+    runs: int
+
+    @property
+    def rms(self):
+        return float(numpy.sqrt((self.residuals**2).mean()))
+
+    def text(self):
+        """What scripts/fit prints."""
+        lines = [f"{name} = {value:.6g} +- {error:.2g}" for name, value, error in
+                 zip(self.names, self.values, self.standard_errors)]
+        lines += [f"correlation of {self.names[i]} and {self.names[j]}: "
+                  f"{self.correlation[i, j]:.2f}"
+                  for j in range(len(self.names)) for i in range(j)]
+        y = self.curve[1] - self.residuals
+        lines.append(f"rms of the residuals: {self.rms:.3g}, {self.rms / max(abs(y)):.2%} "
+                     f"of the largest of {len(y)} measured values")
+        lines += [f"{PART:.0%} of what is known of {name} comes from x = {ends[0]:.4g} to "
+                  f"{ends[1]:.4g}" for name, ends in zip(self.names, self.known) if ends]
+        lines += [f"warning: {warning}" for warning in self.warnings]
+        return "\n".join([*lines, f"{self.runs} runs, " + (
+            "converged" if self.converged else "NOT CONVERGED")])
+
+    def write(self, directory, title="y over x"):
+        """fit.json, fit.csv and the picture."""
+        from . import plots
+
+        (x, fitted), y = self.curve, self.curve[1] - self.residuals
+        name_y, _, name_x = title.partition(" over ")
+        plot = plots.Plot("fit", title, name_x, name_y)
+        plot.add("fitted", *self.computed)
+        plot.add("measured", x, y, "o")
+        plot.save(directory)
+        replace(os.path.join(directory, "fit.csv"), "".join(
+            ",".join(map(str, row)) + "\n" for row in [
+                ["x", "measured", "fitted", *(
+                    f"d fitted / d ln({name})" for name in self.names)],
+                *numpy.column_stack([x, y, fitted, self.sensitivities]).tolist()]))
+        replace(os.path.join(directory, "fit.json"), json.dumps({
+            "parameters": {name: {
+                "value": value, "standard_error": error if error < numpy.inf else None,
+                "known_from": known} for name, value, error, known in zip(
+                    self.names, self.values, self.standard_errors, self.known)},
+            "correlation": self.correlation.tolist(), "rms": self.rms,
+            "points": len(x), "runs": self.runs, "converged": self.converged,
+            "warnings": self.warnings}, indent=2) + "\n")
+
+
+def replace(path, text):
+    """Writes a file that is there only when all of it is."""
+    with open(path + ".new", "w", encoding="utf8") as file:
+        file.write(text)
+    os.replace(path + ".new", path)
+
+
+def place(x, known):
+    """The shortest range of x with PART of what `known` has at each."""
+    order = numpy.argsort(x)
+    x, total = x[order], numpy.cumsum(known[order])
+    ends = numpy.searchsorted(total, numpy.append(0, total[:-1]) + PART * total[-1] *
+                              (1 - 1e-12))
+    first = min(numpy.nonzero(ends < len(x))[0], key=lambda k: x[ends[k]] - x[k])
+    return float(x[first]), float(x[ends[first]])
+
+
+def judge(fit, parameters, unit, inverse, noise):
+    """Adds warnings, and where on x each value is known from."""
+    own = abs(fit.correlation - numpy.eye(len(parameters)))
+    for i, parameter in enumerate(parameters):
+        twin = numpy.argmax(own[i])
+        if not numpy.isfinite(fit.standard_errors[i]):
+            fit.warnings.append(f"no measured point depends on {parameter.name}")
+        elif own[i, twin] > CORRELATED and twin < i:
+            fit.warnings.append(
+                f"the curve hardly tells {fit.names[twin]} from {parameter.name}: their "
+                f"correlation is {fit.correlation[i, twin]:.4f}")
+        for bound in parameter.low, parameter.high:
+            if abs(fit.values[i] - bound) < NEAR * (parameter.high - parameter.low):
+                fit.warnings.append(f"{parameter.name} is at its bound {bound:g}")
+        is_known = numpy.isfinite(fit.standard_errors[i]) and own[i, twin] < 1 - 1e-6
+        fit.known.append(place(fit.curve[0], (unit @ inverse[:, i])**2)
+                         if is_known else None)
+    r = fit.residuals
+    if noise and fit.rms > 2 * noise:
+        fit.warnings.append(f"the rms of the residuals, {fit.rms:.3g}, is more than twice "
+                            "the noise: no values in these bounds give this curve")
+    elif len(r) > 9 and (r[1:] * r[:-1]).sum() > 0.5 * (r**2).sum():
+        fit.warnings.append("the residuals of neighbouring points are alike: the model "
+                            "differs from the curve by more than noise, and values by "
+                            "more than their standard errors")
+
+
+def fit(scene, measured, parameters, curve=CURVE, columns=None, settings=None,
+        noise=None, step=0.05, directory=None, program=None, jobs=None,
+        evaluations=50, tell=lambda line: None):
+    """Fits entries of a scene, {name: (low, high[, start])}, to a measured curve, a
+    table or arrays of x and y, and returns a Fit. Throws Error, also for a run that is
+    not verified; without convergence in so many `evaluations` the Fit says so."""
+    import scipy.optimize
+
+    try:
+        entries = prm.read(scene)
+    except prm.BadInput as error:
+        raise Error(str(error), 2) from None
+    parameters = [Parameter(*item, entries) for item in parameters.items()]
+    x, y = read_measured(measured, columns)
+    if len(x) <= len(parameters):
+        raise Error(f"{len(x)} measured points are too few for {len(parameters)} values",
+                    2)
+    name = os.path.splitext(os.path.basename(scene))[0]
+    settings = {key: runs.text(value) for key, value in (settings or {}).items()}
+    model = Model(scene, parameters, x, settings, curve,
+                  directory or f"output/fit-{name}", program, jobs)
+    model.check(entries)
+    scale = max(abs(y))
+
+    def neighbours(q):
+        return [numpy.where(numpy.arange(len(q)) == k, p.shifted(q[k], step), q)
+                for k, p in enumerate(parameters)]
+
+    def residuals(q):
+        model.curves([q] + neighbours(q) * (model.jobs > len(q)))
+        r = (model.at([q])[0] - y) / scale
+        tell(f"{model.case(q).label}: rms {scale * numpy.sqrt((r**2).mean()):.4g}")
+        return r
+
+    def jacobian(q):
+        moved = neighbours(q)
+        first, *others = model.at([q, *moved])
+        return numpy.column_stack([(other - first) / scale / (to[k] - q[k])
+                                   for k, (other, to) in enumerate(zip(others, moved))])
+
+    found = scipy.optimize.least_squares(
+        residuals, numpy.ones(len(parameters)), jacobian,
+        numpy.transpose([p.bounds for p in parameters]),
+        xtol=1e-4, ftol=1e-5, gtol=1e-12, max_nfev=evaluations)
+    r = scale * found.fun
+    sizes = numpy.linalg.norm(found.jac, axis=0)
+    known = sizes > 1e-9 / step
+    unit = found.jac / numpy.where(known, sizes, 1)
+    # Of values that the curve cannot tell apart the correlation is 1, nearly.
+    inverse = numpy.linalg.inv(unit.T @ unit + 1e-12 * numpy.eye(len(sizes)))
+    sigma = noise or numpy.sqrt((r**2).sum() / (len(r) - len(sizes)))
+    slopes = numpy.array([p.slope(q) for p, q in zip(parameters, found.x)])
+    values = numpy.array([p.value(q) for p, q in zip(parameters, found.x)])
+    size = numpy.sqrt(inverse.diagonal())
+    result = Fit(
+        [p.name for p in parameters], values, numpy.where(
+            known, sigma * size * slopes / numpy.where(known, sizes, 1) / scale,
+            numpy.inf), inverse / numpy.outer(size, size), r, (x, r + y),
+        model.curves([found.x])[0], scale * found.jac * values / slopes, [], [],
+        found.status > 0, len(model.found))
+    judge(result, parameters, unit, inverse, noise)
+    return result
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="scripts/fit", description="Fits entries of a scene to a measured curve, "
+        "see doc/guide/fit.md. Returns 3 without convergence or if a run is not "
+        "verified, 2 for bad input, 4 if interrupted.")
+    parser.add_argument("scene", metavar="SCENE.prm")
+    parser.add_argument("--measured", metavar="FILE.csv", required=True)
+    parser.add_argument("--fit", metavar="SECTION/ENTRY=LOW,HIGH[,START]", required=True,
+                        action="append", help="an entry and its bounds")
+    parser.add_argument("--curve", metavar="'Y over X'", default=CURVE, help="columns of "
+                        f"load_path.csv, also '2*Y over X'; by default {CURVE}")
+    parser.add_argument("--columns", metavar="'Y over X'", help="likewise of the measured "
+                        "curve; by default its second over its first")
+    parser.add_argument("--noise", type=float, help="standard deviation of the measured "
+                        "y; by default that of the residuals")
+    parser.add_argument("--step", type=float, default=0.05, help="of the differences, by "
+                        "default 0.05, which is 5 %% of a value")
+    parser.add_argument("--set", metavar="SECTION/ENTRY=VALUE", default=[],
+                        action="append", help="change an entry of the scene")
+    parser.add_argument("--directory", help="by default output/fit-SCENE")
+    parser.add_argument("--jobs", type=int, help="processes at a time")
+    parser.add_argument("--debond", help="a program that is built already")
+    options = parser.parse_args()
+    name = os.path.splitext(os.path.basename(options.scene))[0]
+    directory = options.directory or f"output/fit-{name}"
+    try:
+        result = fit(
+            options.scene, options.measured,
+            {entry: values.split(",") for entry, _, values in (
+                text.rpartition("=") for text in options.fit)},
+            options.curve, options.columns,
+            dict(text.split("=", 1) for text in options.set), options.noise,
+            options.step, directory, options.debond or cases.build(), options.jobs,
+            tell=lambda line: print(line, flush=True))
+    except Error as error:
+        print(f"fit: {error}", file=sys.stderr)
+        return error.code or 1
+    except KeyboardInterrupt:
+        print("fit: interrupted; the same command goes on where it stopped",
+              file=sys.stderr)
+        return 4
+    print(result.text())
+    result.write(directory, options.curve)
+    return 0 if result.converged else 3
