@@ -2,6 +2,7 @@
 """Runs of the program: which there are, whether they are done, and how they
 are divided among processes."""
 
+import functools
 import hashlib
 import os
 import re
@@ -22,6 +23,12 @@ def build(targets="debond"):
         subprocess.run([script], check=True,
                        env={**os.environ, "DEBOND_TARGETS": targets})
     return program()
+
+
+@functools.cache
+def defaults_of(program):
+    return subprocess.run([program, "--print-parameters"], check=True,
+                          capture_output=True, text=True).stdout
 
 
 class Case:
@@ -109,9 +116,7 @@ def run(program, cases, jobs=None, afresh=False):
     """Runs the cases that are not finished, as many processes at a time as there
     are cores, and returns how many that were. Throws KeyboardInterrupt after
     Ctrl-C or SIGTERM; what is finished then is not run again."""
-    defaults = subprocess.run([program, "--print-parameters"], check=True,
-                              capture_output=True, text=True).stdout
-    waiting = [case for case in cases if case.prepare(defaults, afresh)]
+    waiting = [case for case in cases if case.prepare(defaults_of(program), afresh)]
     jobs = jobs or len(os.sched_getaffinity(0))
     n_run, n_done, running, signals = len(waiting), 0, [], []
     start = time.time()

@@ -16,9 +16,9 @@ SUMS = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Load, ast.Name, ast.Constant
 
 def column(text, table, file):
     """A column of a table, or what + - * / ** make of numbers and columns."""
-    text = text.strip()
-    if text in table:
-        text, table = "_", {"_": table[text]}
+    titles, text = {}, text.strip()
+    if text in table:  # it need not be a name, as 'force in N'
+        titles, text, table = {"_": text}, "_", {"_": table[text]}
     try:
         tree = ast.parse(text, mode="eval")
     except SyntaxError:
@@ -31,7 +31,8 @@ def column(text, table, file):
             raise Error(f"{file} has no column '{name}', but {', '.join(near)}, ...; "
                         "its first line has them all", 2)
         if table[name].dtype.kind != "f":
-            raise Error(f"{file}: not all in the column '{name}' are numbers", 2)
+            raise Error(f"{file}: not all in the column '{titles.get(name, name)}' are "
+                        "numbers", 2)
     return eval(compile(tree, text, "eval"), {"__builtins__": {}}, table)
 
 

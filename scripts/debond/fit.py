@@ -17,6 +17,7 @@ from .runs import Error
 CURVE = "unit_displacement_work over displacement_factor"
 CORRELATED = 0.95  # more is told
 NEAR = 0.01        # a value is at a bound, by the range between both
+NEGLIGIBLE = 1e-4  # residuals, by the largest value
 PART = 0.8         # of what is known of a parameter, whose place is told
 
 
@@ -107,7 +108,8 @@ def judge(fit, parameters, unit, inverse, noise):
     for i, parameter in enumerate(parameters):
         twin = numpy.argmax(own[i])
         if not numpy.isfinite(fit.standard_errors[i]):
-            fit.warnings.append(f"no measured point depends on {parameter.name}")
+            fit.warnings.append(f"no measured point depends on {parameter.name} near "
+                                f"{fit.values[i]:.4g}: start elsewhere")
         elif own[i, twin] > CORRELATED and twin < i:
             fit.warnings.append(
                 f"the curve hardly tells {fit.names[twin]} from {parameter.name}: their "
@@ -122,7 +124,8 @@ def judge(fit, parameters, unit, inverse, noise):
     if noise and fit.rms > 2 * noise:
         fit.warnings.append(f"the rms of the residuals, {fit.rms:.3g}, is more than twice "
                             "the noise: no values in these bounds give this curve")
-    elif len(r) > 9 and (r[1:] * r[:-1]).sum() > 0.5 * (r**2).sum():
+    elif fit.rms > NEGLIGIBLE * max(abs(fit.curve[1])) and len(r) > 9 and (
+            r[1:] * r[:-1]).sum() > 0.5 * (r**2).sum():
         fit.warnings.append("the residuals of neighbouring points are alike: the model "
                             "differs from the curve by more than noise, and values by "
                             "more than their standard errors")
@@ -142,9 +145,10 @@ def fit(scene, measured, parameters, curve=CURVE, columns=None, settings=None,
         raise Error(str(error), 2) from None
     parameters = [Parameter(*item, entries) for item in parameters.items()]
     x, y = read_measured(measured, columns)
-    if len(x) <= len(parameters):
-        raise Error(f"{len(x)} measured points are too few for {len(parameters)} values",
-                    2)
+    if not 0 < len(parameters) < len(x):
+        raise Error(f"{len(x)} measured points do not give {len(parameters)} values", 2)
+    if not 0 < step < 1 or (noise is not None and not noise > 0):
+        raise Error("the step needs to be between 0 and 1, and the noise positive", 2)
     name = os.path.splitext(os.path.basename(scene))[0]
     settings = {key: runs.text(value) for key, value in (settings or {}).items()}
     model = Model(scene, parameters, x, settings, curve,
@@ -171,7 +175,7 @@ def fit(scene, measured, parameters, curve=CURVE, columns=None, settings=None,
     found = scipy.optimize.least_squares(
         residuals, numpy.ones(len(parameters)), jacobian,
         numpy.transpose([p.bounds for p in parameters]),
-        xtol=1e-4, ftol=1e-5, gtol=1e-12, max_nfev=evaluations)
+        xtol=3e-4, ftol=1e-4, gtol=1e-12, max_nfev=evaluations)
     r = scale * found.fun
     sizes = numpy.linalg.norm(found.jac, axis=0)
     known = sizes > 1e-9 / step
@@ -221,9 +225,9 @@ def main():
         result = fit(
             options.scene, options.measured,
             {entry: values.split(",") for entry, _, values in (
-                text.rpartition("=") for text in options.fit)},
+                text.partition("=") for text in options.fit)},
             options.curve, options.columns,
-            dict(text.split("=", 1) for text in options.set), options.noise,
+            dict(text.partition("=")[::2] for text in options.set), options.noise,
             options.step, directory, options.debond or cases.build(), options.jobs,
             tell=lambda line: print(line, flush=True))
     except Error as error:

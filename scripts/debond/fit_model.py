@@ -85,8 +85,9 @@ class Model:
         """x and y of each, run as many at a time as `jobs` where they are new."""
         wanted = [self.case(q) for q in all_q]
         new = {case.label: case for case in wanted if case.label not in self.found}
-        with contextlib.redirect_stdout(io.StringIO()):
-            cases.run(self.program, list(new.values()), self.jobs)
+        if new:
+            with contextlib.redirect_stdout(io.StringIO()):
+                cases.run(self.program, list(new.values()), self.jobs)
         for label, case in new.items():
             if case.status() not in ("success", "comes off"):
                 raise Error(f"{label}: the run is not verified: {case.status()}; see "
@@ -98,7 +99,8 @@ class Model:
         file = case.path("load_path.csv")
         table = runs.read_csv(file)
         if not table:
-            raise Error(f"{self.scene} has no load path", 2)
+            raise Error(f"{self.scene} has no load path: set Load path/Factors or "
+                        "Load path/Displacement factors", 2)
         x, y = curve_of(table, self.curve, file)
         if (numpy.diff(x) <= 0).any():
             raise Error(f"{file}: in '{self.curve}' x does not grow in each row", 2)
