@@ -17,6 +17,7 @@ from .runs import Error
 CURVE = "unit_displacement_work over displacement_factor"
 CORRELATED = 0.95  # more is told
 NEAR = 0.01        # a value is at a bound, by the range between both
+NOTHING = 1e-8     # changes of the curve, by the largest value
 NEGLIGIBLE = 1e-4  # residuals, by the largest value
 PART = 0.8         # of what is known of a parameter, whose place is told
 
@@ -102,24 +103,54 @@ def place(x, known):
     return float(x[first]), float(x[ends[first]])
 
 
-def judge(fit, parameters, unit, inverse, noise):
-    """Adds warnings, and where on x each value is known from."""
-    own = abs(fit.correlation - numpy.eye(len(parameters)))
-    for i, parameter in enumerate(parameters):
-        twin = numpy.argmax(own[i])
-        if not numpy.isfinite(fit.standard_errors[i]):
-            fit.warnings.append(f"no measured point depends on {parameter.name} near "
-                                f"{fit.values[i]:.4g}: start elsewhere")
-        elif own[i, twin] > CORRELATED and twin < i:
-            fit.warnings.append(
-                f"the curve hardly tells {fit.names[twin]} from {parameter.name}: their "
-                f"correlation is {fit.correlation[i, twin]:.4f}")
-        for bound in parameter.low, parameter.high:
-            if abs(fit.values[i] - bound) < NEAR * (parameter.high - parameter.low):
-                fit.warnings.append(f"{parameter.name} is at its bound {bound:g}")
-        is_known = numpy.isfinite(fit.standard_errors[i]) and own[i, twin] < 1 - 1e-6
-        fit.known.append(place(fit.curve[0], (unit @ inverse[:, i])**2)
-                         if is_known else None)
+def judged(model, q, r, noise, converged):
+    """The Fit of these q and residuals."""
+    slopes, jumps = model.slopes_of_both_sides(q)
+    sizes = numpy.linalg.norm(slopes, axis=0)
+    is_known = sizes > NOTHING * max(abs(r + model.at([q])[0]))
+    unit = slopes / numpy.where(is_known, sizes, 1)
+    # Of values that the curve cannot tell apart the correlation is 1, nearly.
+    inverse = numpy.linalg.inv(unit.T @ unit + 1e-12 * numpy.eye(len(q)))
+    size = numpy.sqrt(inverse.diagonal())
+    sigma = noise or numpy.sqrt((r**2).sum() / (len(r) - len(q)))
+    values, rates = numpy.transpose([(p.value(part), p.slope(part)) for p, part in
+                                     zip(model.parameters, q)])
+    fit = Fit([p.name for p in model.parameters], values, numpy.where(
+        is_known, sigma * size * rates / numpy.where(is_known, sizes, 1), numpy.inf),
+        inverse / numpy.outer(size, size), r, (model.x, model.at([q])[0]),
+        model.curves([q])[0], slopes * values / rates, [], [], converged,
+        len(model.found))
+    for i, parameter in enumerate(model.parameters):
+        judge(fit, i, parameter, q[i], jumps[i])
+        twins = abs(fit.correlation[i]) > 1 - 1e-6
+        fit.known.append(place(model.x, (unit @ inverse[:, i])**2)
+                         if is_known[i] and twins.sum() == 1 else None)
+    judge_residuals(fit, noise)
+    return fit
+
+
+def judge(fit, i, parameter, q, jumps):
+    """Warnings on the value of a parameter."""
+    name = parameter.name
+    if jumps and not numpy.isfinite(fit.standard_errors[i]):
+        fit.warnings.append(f"only jumps of the curve depend on {name}: its standard "
+                            "error is not known")
+    elif not numpy.isfinite(fit.standard_errors[i]):
+        fit.warnings.append(f"no measured point depends on {name} near "
+                            f"{fit.values[i]:.4g}: start elsewhere")
+    elif jumps:
+        fit.warnings.append(f"the curve jumps at {jumps} of the points when {name} "
+                            "changes by a step: its standard error leaves that out")
+    for twin in numpy.nonzero(abs(fit.correlation[i, :i]) > CORRELATED)[0]:
+        fit.warnings.append(f"the curve hardly tells {fit.names[twin]} from {name}: their "
+                            f"correlation is {fit.correlation[i, twin]:.4f}")
+    for bound, end in zip((parameter.low, parameter.high), parameter.bounds):
+        if abs(q - end) < NEAR * numpy.ptp(parameter.bounds):
+            fit.warnings.append(f"{name} is at its bound {bound:g}")
+
+
+def judge_residuals(fit, noise):
+    """Warnings on what is left."""
     r = fit.residuals
     if noise and fit.rms > 2 * noise:
         fit.warnings.append(f"the rms of the residuals, {fit.rms:.3g}, is more than twice "
@@ -151,49 +182,22 @@ def fit(scene, measured, parameters, curve=CURVE, columns=None, settings=None,
         raise Error("the step needs to be between 0 and 1, and the noise positive", 2)
     name = os.path.splitext(os.path.basename(scene))[0]
     settings = {key: runs.text(value) for key, value in (settings or {}).items()}
-    model = Model(scene, parameters, x, settings, curve,
+    model = Model(scene, parameters, x, curve, step, settings,
                   directory or f"output/fit-{name}", program, jobs)
     model.check(entries)
     scale = max(abs(y))
 
-    def neighbours(q):
-        return [numpy.where(numpy.arange(len(q)) == k, p.shifted(q[k], step), q)
-                for k, p in enumerate(parameters)]
-
     def residuals(q):
-        model.curves([q] + neighbours(q) * (model.jobs > len(q)))
+        model.curves([q] + model.neighbours(q) * (model.jobs > len(q)))
         r = (model.at([q])[0] - y) / scale
         tell(f"{model.case(q).label}: rms {scale * numpy.sqrt((r**2).mean()):.4g}")
         return r
 
-    def jacobian(q):
-        moved = neighbours(q)
-        first, *others = model.at([q, *moved])
-        return numpy.column_stack([(other - first) / scale / (to[k] - q[k])
-                                   for k, (other, to) in enumerate(zip(others, moved))])
-
     found = scipy.optimize.least_squares(
-        residuals, numpy.ones(len(parameters)), jacobian,
+        residuals, numpy.ones(len(parameters)), lambda q: model.slopes(q) / scale,
         numpy.transpose([p.bounds for p in parameters]),
         xtol=3e-4, ftol=1e-4, gtol=1e-12, max_nfev=evaluations)
-    r = scale * found.fun
-    sizes = numpy.linalg.norm(found.jac, axis=0)
-    known = sizes > 1e-9 / step
-    unit = found.jac / numpy.where(known, sizes, 1)
-    # Of values that the curve cannot tell apart the correlation is 1, nearly.
-    inverse = numpy.linalg.inv(unit.T @ unit + 1e-12 * numpy.eye(len(sizes)))
-    sigma = noise or numpy.sqrt((r**2).sum() / (len(r) - len(sizes)))
-    slopes = numpy.array([p.slope(q) for p, q in zip(parameters, found.x)])
-    values = numpy.array([p.value(q) for p, q in zip(parameters, found.x)])
-    size = numpy.sqrt(inverse.diagonal())
-    result = Fit(
-        [p.name for p in parameters], values, numpy.where(
-            known, sigma * size * slopes / numpy.where(known, sizes, 1) / scale,
-            numpy.inf), inverse / numpy.outer(size, size), r, (x, r + y),
-        model.curves([found.x])[0], scale * found.jac * values / slopes, [], [],
-        found.status > 0, len(model.found))
-    judge(result, parameters, unit, inverse, noise)
-    return result
+    return judged(model, found.x, scale * found.fun, noise, found.status > 0)
 
 
 def main():

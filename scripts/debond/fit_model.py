@@ -14,6 +14,7 @@ from .runs import Error
 
 QUIET = {"Output/Body VTU": "false", "Output/Contact VTU": "false",
          "Output/Load path contact VTU": "false", "Load path/Global branch": "none"}
+JUMP = 0.5  # the differences of both sides differ by more, relative to their sum
 
 
 class Parameter:
@@ -45,17 +46,20 @@ class Parameter:
         """d value / dq"""
         return self.value(q) if self.is_log else self.high - self.low
 
-    def shifted(self, q, step):
-        """q and a step, backwards where the other way is beyond the bound."""
+    def sides(self, q, step):
+        """The places a step ahead and behind that are between the bounds."""
         step = min(step, 0.5 * numpy.ptp(self.bounds))
-        return q + step if q + step <= self.bounds[1] else q - step
+        return [to for to in (q + step, q - step)
+                if self.bounds[0] <= to <= self.bounds[1]]
 
 
 class Model:
     """The computed curve at the measured x, which keeps all its runs."""
 
-    def __init__(self, scene, parameters, x, settings, curve, directory, program, jobs):
+    def __init__(self, scene, parameters, x, curve, step, settings, directory, program,
+                 jobs):
         self.scene, self.parameters, self.x, self.curve = scene, parameters, x, curve
+        self.step = step
         self.settings, self.directory = {**QUIET, **settings}, directory
         self.program, self.found = program or runs.program(), {}
         self.jobs = jobs or len(os.sched_getaffinity(0))
@@ -113,3 +117,27 @@ class Model:
     def at(self, all_q):
         """y at the measured x, a row for each."""
         return numpy.array([numpy.interp(self.x, *c) for c in self.curves(all_q)])
+
+    def neighbours(self, q, behind=False):
+        """q with a step of each parameter, ahead where it can be, or `behind` ones."""
+        places = [p.sides(part, self.step) for p, part in zip(self.parameters, q)]
+        return [numpy.where(numpy.arange(len(q)) == k, sides[-1 if behind else 0], q)
+                for k, sides in enumerate(places)]
+
+    def slopes(self, q, behind=False):
+        """d y / dq by differences, a column for each parameter."""
+        moved = self.neighbours(q, behind)
+        first, *others = self.at([q, *moved])
+        return numpy.column_stack([(other - first) / (to - q)[k] for k, (other, to)
+                                   in enumerate(zip(others, moved))])
+
+    def slopes_of_both_sides(self, q):
+        """Their mean, or where they differ much the smaller one, since a curve that
+        jumps within a step has no slope there; for each parameter how many jumps."""
+        ahead, behind = self.slopes(q), self.slopes(q, True)
+        smaller = numpy.where(abs(ahead) < abs(behind), ahead, behind)
+        apart = abs(ahead - behind)
+        return (numpy.where(apart > JUMP * (abs(ahead) + abs(behind)), smaller,
+                            (ahead + behind) / 2),
+                (apart > abs(smaller).max(axis=0) + 1e-6 * max(abs(self.at([q])[0]))
+                 ).sum(axis=0))

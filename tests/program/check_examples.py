@@ -28,9 +28,10 @@ import sys
 import tempfile
 
 MARK = re.compile(r"<!-- example: (.*?) -->")
-COMMAND = re.compile(r"scripts/(run|python)|^(\S*/)?debond\b")
+COMMAND = re.compile(r"scripts/(run|python|fit)|^(\S*/)?debond\b")
 SCRIPTS = {"scripts/run": "debond", "scripts/python": "/usr/bin/python3",
            "scripts/study": "/usr/bin/python3 -m debond study",
+           "scripts/fit": "/usr/bin/python3 -m debond fit",
            "scripts/picture": "/usr/bin/python3 -m debond picture"}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?$")
 ROUNDING = 1e-8
