@@ -53,10 +53,12 @@ class Fit:
                   f"{self.correlation[i, j]:.2f}"
                   for j in range(len(self.names)) for i in range(j)]
         y = self.curve[1] - self.residuals
-        lines.append(f"rms of the residuals: {self.rms:.3g}, {self.rms / max(abs(y)):.2%} "
-                     f"of the largest of {len(y)} measured values")
-        lines += [f"{PART:.0%} of what is known of {name} comes from x = {ends[0]:.4g} to "
-                  f"{ends[1]:.4g}" for name, ends in zip(self.names, self.known) if ends]
+        part = self.rms / (max(abs(y)) or 1.)
+        lines.append(f"rms of the residuals: {self.rms:.3g}, {part:.2%} of the largest "
+                     f"of {len(y)} measured values")
+        lines += [f"{PART:.0%} of what is known of {name} comes from x = "
+                  f"{ends[0]:.4g} to {ends[1]:.4g}"
+                  for name, ends in zip(self.names, self.known) if ends]
         lines += [f"warning: {warning}" for warning in self.warnings]
         return "\n".join([*lines, f"{self.runs} runs, " + (
             "converged" if self.converged else "NOT CONVERGED")])
@@ -142,8 +144,8 @@ def judge(fit, i, parameter, q, jumps):
         fit.warnings.append(f"the curve jumps at {jumps} of the points when {name} "
                             "changes by a step: its standard error leaves that out")
     for twin in numpy.nonzero(abs(fit.correlation[i, :i]) > CORRELATED)[0]:
-        fit.warnings.append(f"the curve hardly tells {fit.names[twin]} from {name}: their "
-                            f"correlation is {fit.correlation[i, twin]:.4f}")
+        fit.warnings.append(f"the curve hardly tells {fit.names[twin]} from {name}: "
+                            f"their correlation is {fit.correlation[i, twin]:.4f}")
     for bound, end in zip((parameter.low, parameter.high), parameter.bounds):
         if abs(q - end) < NEAR * numpy.ptp(parameter.bounds):
             fit.warnings.append(f"{name} is at its bound {bound:g}")
@@ -153,8 +155,8 @@ def judge_residuals(fit, noise):
     """Warnings on what is left."""
     r = fit.residuals
     if noise and fit.rms > 2 * noise:
-        fit.warnings.append(f"the rms of the residuals, {fit.rms:.3g}, is more than twice "
-                            "the noise: no values in these bounds give this curve")
+        fit.warnings.append(f"the rms of the residuals, {fit.rms:.3g}, is more than "
+                            "twice the noise: no values in these bounds give it")
     elif fit.rms > NEGLIGIBLE * max(abs(fit.curve[1])) and len(r) > 9 and (
             r[1:] * r[:-1]).sum() > 0.5 * (r**2).sum():
         fit.warnings.append("the residuals of neighbouring points are alike: the model "
@@ -185,7 +187,7 @@ def fit(scene, measured, parameters, curve=CURVE, columns=None, settings=None,
     model = Model(scene, parameters, x, curve, step, settings,
                   directory or f"output/fit-{name}", program, jobs)
     model.check(entries)
-    scale = max(abs(y))
+    scale = max(abs(y)) or 1.
 
     def residuals(q):
         model.curves([q] + model.neighbours(q) * (model.jobs > len(q)))
@@ -207,19 +209,20 @@ def main():
         "verified, 2 for bad input, 4 if interrupted.")
     parser.add_argument("scene", metavar="SCENE.prm")
     parser.add_argument("--measured", metavar="FILE.csv", required=True)
-    parser.add_argument("--fit", metavar="SECTION/ENTRY=LOW,HIGH[,START]", required=True,
-                        action="append", help="an entry and its bounds")
-    parser.add_argument("--curve", metavar="'Y over X'", default=CURVE, help="columns of "
-                        f"load_path.csv, also '2*Y over X'; by default {CURVE}")
-    parser.add_argument("--columns", metavar="'Y over X'", help="likewise of the measured "
-                        "curve; by default its second over its first")
-    parser.add_argument("--noise", type=float, help="standard deviation of the measured "
-                        "y; by default that of the residuals")
-    parser.add_argument("--step", type=float, default=0.05, help="of the differences, by "
-                        "default 0.05, which is 5 %% of a value")
+    parser.add_argument("--fit", metavar="SECTION/ENTRY=LOW,HIGH[,START]",
+                        required=True, action="append", help="an entry and its bounds")
+    parser.add_argument("--curve", metavar="'Y over X'", default=CURVE, help="columns "
+                        f"of load_path.csv, also '2*Y over X'; by default {CURVE}")
+    parser.add_argument("--columns", metavar="'Y over X'", help="likewise of the "
+                        "measured curve; by default its second over its first")
+    parser.add_argument("--noise", type=float, help="standard deviation of the "
+                        "measured y; by default that of the residuals")
+    parser.add_argument("--step", type=float, default=0.05, help="of the differences, "
+                        "by default 0.05, which is 5 %% of a value")
     parser.add_argument("--set", metavar="SECTION/ENTRY=VALUE", default=[],
                         action="append", help="change an entry of the scene")
     parser.add_argument("--directory", help="by default output/fit-SCENE")
+    parser.add_argument("--evaluations", type=int, default=50, help="the most steps")
     parser.add_argument("--jobs", type=int, help="processes at a time")
     parser.add_argument("--debond", help="a program that is built already")
     options = parser.parse_args()
@@ -233,7 +236,7 @@ def main():
             options.curve, options.columns,
             dict(text.partition("=")[::2] for text in options.set), options.noise,
             options.step, directory, options.debond or cases.build(), options.jobs,
-            tell=lambda line: print(line, flush=True))
+            options.evaluations, lambda line: print(line, flush=True))
     except Error as error:
         print(f"fit: {error}", file=sys.stderr)
         return error.code or 1

@@ -101,6 +101,16 @@ assert any("more than twice the noise" in line for line in said), said
 wave = fit({STIFFNESS: (5, 500, 49)}, exact + 0.1 * numpy.sin(lift))
 assert any("neighbouring points" in line for line in wave.warnings), wave.warnings
 
+# At 14.8 the bonds break, at M (1 + a H / E), if they are 5 % softer: the standard
+# error is that of the slope, not of this jump.
+long = numpy.append(lift, 14.8)
+jump = debond.fit("block.prm", (long, long * exact[0] / lift[0]), {
+    STIFFNESS: (5, 500, 50)}, CURVE, noise=noise, directory="jump", program=str(DEBOND),
+    settings={"Load path/Displacement factors": "0:2:14, 14.8"})
+assert any("jumps at 1 of the points" in line for line in jump.warnings), jump.warnings
+near(jump.standard_errors[0], noise / numpy.sqrt((numpy.append(
+    rate, rate[0] * 14.8 / lift[0])**2).sum()), 0.05)
+
 # What is wrong is said with its name.
 thrown(2, "block.prm has no constant b", parameters={"Constants/b": (1, 2)})
 thrown(2, "Bond stiffnes", parameters={"Contact law/Bond stiffnes": (1, 2)})
@@ -113,7 +123,8 @@ thrown(2, "no sum of numbers", curve="reaction_top_y.sum() over displacement_fac
 thrown(2, "x from 0 to 9", "at 0.5 to 9.5", settings={
     "Load path/Displacement factors": "0:3:9"})
 thrown(2, "no load path", settings={"Load path/Displacement factors": ""})
-thrown(3, "a = 20: the run is not verified: ", settings={"Verification/Tolerance": 1e-18})
+thrown(3, "a = 20: the run is not verified: ", settings={
+    "Verification/Tolerance": 1e-18})
 
 
 # The command, with the units of a measured table.
@@ -127,10 +138,10 @@ def run(*options, code=0):
 
 pathlib.Path("measured.csv").write_text("lift in mm,lever,force in kN\n" + "".join(
     f"{x / 1e3:.6g},2,{y / 1e3:.8g}\n" for x, y in zip(lift, exact)))
+KILO = "0.001*reaction_top_y over displacement_factor/1000"
 BOUNDS = "--fit", "Constants/a=5,500,48"
 said = run(*BOUNDS, "--measured", "measured.csv", "--columns",
-           "force in kN over lift in mm", "--curve",
-           "0.001*reaction_top_y over displacement_factor/1000")
+           "force in kN over lift in mm", "--curve", KILO)
 assert "Constants/a = 50" in said and "converged" in said, said
 stored = json.loads(pathlib.Path("command/fit.json").read_text())
 near(stored["parameters"]["Constants/a"]["value"], 50., 1e-3)
@@ -139,6 +150,9 @@ rows = debond.runs.read_csv("command/fit.csv")
 assert numpy.allclose(rows["measured"], exact / 1e3) and len(rows) == 4
 for ending in "png", "svg":
     assert os.path.getsize(f"command/fit.{ending}") > 5000
+assert "NOT CONVERGED" in run("--fit", "Constants/a=5,500", "--measured",
+                              "measured.csv", "--columns", "force in kN over lift in mm",
+                              "--curve", KILO, "--evaluations", "1", code=3)
 assert "there is no file none.csv" in run(*BOUNDS, "--measured", "none.csv", code=2)
 assert "no column 'force'" in run(*BOUNDS, "--measured", "measured.csv", "--columns",
                                   "force over lever", code=2)
