@@ -150,9 +150,9 @@ rows = debond.runs.read_csv("command/fit.csv")
 assert numpy.allclose(rows["measured"], exact / 1e3) and len(rows) == 4
 for ending in "png", "svg":
     assert os.path.getsize(f"command/fit.{ending}") > 5000
-assert "NOT CONVERGED" in run("--fit", "Constants/a=5,500", "--measured",
-                              "measured.csv", "--columns", "force in kN over lift in mm",
-                              "--curve", KILO, "--evaluations", "1", code=3)
+assert "NOT CONVERGED" in run(
+    "--fit", "Constants/a=5,500", "--measured", "measured.csv", "--columns",
+    "force in kN over lift in mm", "--curve", KILO, "--evaluations", "1", code=3)
 assert "there is no file none.csv" in run(*BOUNDS, "--measured", "none.csv", code=2)
 assert "no column 'force'" in run(*BOUNDS, "--measured", "measured.csv", "--columns",
                                   "force over lever", code=2)
