@@ -112,7 +112,7 @@ def check_sides():
     for one, other in zip(result["probes"]["grip"], result["reactions"]["left"], strict=True):
         close("the force of a side", one, other, 1e-12, 1.)
     # A crack whose front comes to sides that move: a translation opens nothing.
-    result = solve("Dimension=3", "Lengths=4, 2, 1", "Cells=8, 4, 2", "Cuts=y = 1 && x < 2",
+    result = solve(MM, "Dimension=3", "Lengths=4, 2, 1", "Cells=8, 4, 2", "Cuts=y = 1 && x < 2",
                    "Clamped boundaries=", "Contact boundary=cut_1", "Traction top=",
                    *(f"Displacement {side}=free; 0.01; free" for side in ("front", "back", "right")),
                    "Displacement left=0; 0.01; 0", "Young modulus=100", "Bond stiffness=10")
