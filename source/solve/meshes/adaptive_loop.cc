@@ -227,25 +227,24 @@ namespace Debond
       bool
       solve_on(Answer<dim> begun)
       {
-        // Global branch and arc belong to the last mesh alone.
-        LoadPathParameters followed = problem.load_path;
-        followed.global_branch      = GlobalBranch::none;
-        followed.arc                = false;
-        estimate                    = {};
-        Answer<dim> found           = std::move(begun);
+        // The largest force, global branch and arc belong to the last mesh
+        // alone.
+        estimate          = {};
+        Answer<dim> found = std::move(begun);
         try
           {
-            found =
-              solve_on_mesh<dim>(followed,
-                                 {of_mesh, settings.tolerance},
-                                 found,
-                                 [this](const Answer<dim>       &state,
-                                        const Verification<dim> &verification) {
-                                   observer.step_is_done(state, verification);
-                                   estimate_step(state);
-                                 },
-                                 {});
-            if (followed.factors.empty())
+            found = solve_on_mesh<dim>(
+              problem.load_path,
+              {of_mesh, settings.tolerance},
+              found,
+              [this](const Answer<dim>       &state,
+                     const Verification<dim> &verification) {
+                observer.step_is_done(state, verification);
+                estimate_step(state);
+              },
+              {},
+              /*only_steps=*/true);
+            if (problem.load_path.factors.empty())
               estimate_minimum(found);
           }
         // The data of the scene are evaluated at points that the solve does not

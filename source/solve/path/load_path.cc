@@ -332,6 +332,8 @@ namespace Debond
               const LoadFactors last = steps[begun.first + 1].factors();
               inside.walk(last, parameters.resolve, most_halvings, peak);
             }
+          else
+            peak.bound = std::max(peak.bound, begun.bound);
         // Steps that were not looked into are bounded by the part that is asked
         // for.
         if (force(peak.step) > 0.)
@@ -533,11 +535,14 @@ namespace Debond
                   const unsigned int halvings,
                   Peak              &peak)
       {
-        return walk(middle(steps.back().factors(), last),
-                    resolve,
-                    halvings - 1,
-                    peak) &&
-               walk(last, resolve, halvings - 1, peak);
+        if (walk(middle(steps.back().factors(), last),
+                 resolve,
+                 halvings - 1,
+                 peak))
+          return walk(last, resolve, halvings - 1, peak);
+        // Nothing is known beyond a state that was not found.
+        peak.bound = std::max(peak.bound, bound_of_force(steps.back(), last));
+        return false;
       }
 
       /// Made when it is needed: not if all steps are done, and there is no
@@ -890,10 +895,13 @@ namespace Debond
                    const SolveSettings         &settings,
                    Answer<dim>                  begun,
                    const LoadPathObserver<dim> &observer,
-                   std::ostream                *out)
+                   std::ostream                *out,
+                   const bool                   only_steps)
   {
     PathFollower<dim> path(parameters, settings, std::move(begun), out);
     path.follow(observer);
+    if (only_steps)
+      return path.take_answer();
     path.find_peak();
     // The order matters: first the followed path, whose states the branch
     // begins with. A path that has failed has neither branch nor arc.
@@ -919,11 +927,12 @@ namespace Debond
                 const SolveSettings         &settings,
                 Answer<dim>                  begun,
                 const LoadPathObserver<dim> &observer,
-                const ProgressLog            log)
+                const ProgressLog            log,
+                const bool                   only_steps)
   {
     if (!parameters.factors.empty())
       return follow_load_path(
-        parameters, settings, std::move(begun), observer, log.out);
+        parameters, settings, std::move(begun), observer, log.out, only_steps);
     // On a refined mesh the minimum is sought from the state of the mesh
     // before; without one the start is rest, or what coarser spaces give.
     const DofVector &start = begun.meshes.start;

@@ -29,6 +29,8 @@ namespace Debond
    *
    * @p begun has the scene, how it is solved, and the steps that an earlier run
    * or call has done on this mesh; the observer sees the last of them again.
+   * With @p only_steps neither the largest force nor the branch nor the arc is
+   * looked for.
    */
   template <int dim>
   Answer<dim>
@@ -36,7 +38,8 @@ namespace Debond
                    const SolveSettings         &settings,
                    Answer<dim>                  begun,
                    const LoadPathObserver<dim> &observer,
-                   std::ostream                *out);
+                   std::ostream                *out,
+                   const bool                   only_steps = false);
 
   /// Solves the scene of @p begun on its mesh: the states of its load path, or
   /// the minimum from the start that @p begun has.
@@ -46,7 +49,8 @@ namespace Debond
                 const SolveSettings         &settings,
                 Answer<dim>                  begun,
                 const LoadPathObserver<dim> &observer,
-                const ProgressLog            log);
+                const ProgressLog            log,
+                const bool                   only_steps = false);
 } // namespace Debond
 
 #endif
