@@ -204,7 +204,8 @@ namespace Debond
                                           "Load path/Arc",
                                           "Load path/Displacement factors",
                                           "Load path/Factors",
-                                          "Load path/Global branch"})
+                                          "Load path/Global branch",
+                                          "Load path/Resolve"})
         if (entry.rfind(beginning, 0) == 0)
           return true;
       return false;

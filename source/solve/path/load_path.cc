@@ -128,8 +128,9 @@ namespace Debond
         , settings(settings)
         , scene(*answer.scene)
         , table(parameters, out)
+        , inside_of_step(parameters)
       {
-        alone.resolve = 0.;
+        inside_of_step.resolve = 0.;
         if (!steps.empty())
           return;
         // A path remembers from step to step the displacement, from which the
@@ -148,12 +149,16 @@ namespace Debond
           }
       }
 
+      /// Its members refer to each other.
+      PathFollower(const PathFollower &) = delete;
+
       void
       follow(const LoadPathObserver<dim> &observer)
       {
         // The steps of an earlier run are told again and continued. A step that
         // has failed, or that is not verified, has a message, and ends the
         // path, since later ones would start from it.
+        const bool is_repeated = steps.size() == parameters.factors.size();
         table.titles("broken part");
         for (const LoadPathStep<dim> &step : steps)
           table.row(step);
@@ -162,6 +167,8 @@ namespace Debond
         if (steps.size() < parameters.factors.size())
           make_solver();
         const dealii::Timer timer;
+        if (steps.size() == 1 && progress.stiffness == 0. && seeks_peak())
+          probe_stiffness();
         while (steps.size() < parameters.factors.size() &&
                (steps.empty() || steps.back().message.empty()))
           {
@@ -174,8 +181,6 @@ namespace Debond
                        observer))
               break;
             table.row(steps.back());
-            if (steps.size() == 1 && seeks_peak())
-              probe_stiffness();
           }
         result.parts["followed path"] += timer.wall_time();
         // What bonds take may depend on the mode in which they break. If it
@@ -184,7 +189,7 @@ namespace Debond
         const BondMemory &memory = progress.memory;
         const double      taken =
           std::accumulate(memory.taken.begin(), memory.taken.end(), 0.);
-        if (memory.lag > Tolerance::lag_of_mode * taken)
+        if (memory.lag > Tolerance::lag_of_mode * taken && !is_repeated)
           result.notes.push_back(words(
             "the mode of bonds changes within the steps in which they break, "
             "which moves what they take by up to ",
@@ -315,7 +320,7 @@ namespace Debond
       void
       find_peak()
       {
-        if (!seeks_peak())
+        if (!seeks_peak() || !has_no_failure())
           return;
         const dealii::Timer timer;
         Peak                peak = {steps[0], 0.};
@@ -326,16 +331,23 @@ namespace Debond
         // where it began, with the memory that bonds had then.
         for (const UnresolvedStep &begun : progress.unresolved)
           if (begun.bound > (1. + parameters.resolve) * force(peak.step) &&
-              begun.first + 1 < steps.size() && !interruption.requested())
-            {
-              PathFollower inside    = from(begun.first, begun.u, begun.memory);
-              const LoadFactors last = steps[begun.first + 1].factors();
-              inside.walk(last, parameters.resolve, most_halvings, peak);
-            }
+              !interruption.requested())
+            from(begun.first, begun.u, begun.memory)
+              ->walk(steps[begun.first + 1].factors(),
+                     parameters.resolve,
+                     most_halvings,
+                     peak);
           else
             peak.bound = std::max(peak.bound, begun.bound);
-        // Steps that were not looked into are bounded by the part that is asked
-        // for.
+        // There is no state at the factor at which the body detaches.
+        if (result.comes_off_at)
+          peak.bound =
+            std::max(peak.bound,
+                     bound_of_force(steps.back(), *result.comes_off_at));
+        if (interruption.requested())
+          interrupt("the largest force is not known");
+        // Steps that were found to be resolved are bounded by the part that is
+        // asked for.
         if (force(peak.step) > 0.)
           answer.peak = {peak.step,
                          std::max(parameters.resolve,
@@ -393,7 +405,8 @@ namespace Debond
       {
         const double way   = last.displacements - before.displacement_factor;
         double       slope = progress.stiffness;
-        if (!parameters.bonds_heal && before.displacement_factor != 0. &&
+        if (!parameters.bonds_heal &&
+            before.displacement_factor * last.displacements > 0. &&
             !scene.problem().unknowns().has_gap() &&
             scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
           slope = std::min(slope,
@@ -419,7 +432,7 @@ namespace Debond
       }
 
       /// A path of its own from a step of this one, by the same solver.
-      PathFollower
+      std::unique_ptr<PathFollower>
       from(const unsigned int step,
            const DofVector   &u,
            const BondMemory  &memory)
@@ -434,8 +447,11 @@ namespace Debond
         begun.path.u         = u;
         begun.path.memory    = memory;
         begun.path.stiffness = progress.stiffness;
-        PathFollower inside(alone, settings, std::move(begun), nullptr);
-        inside.solver = solver;
+        auto inside          = std::make_unique<PathFollower>(inside_of_step,
+                                                     settings,
+                                                     std::move(begun),
+                                                     nullptr);
+        inside->solver       = solver;
         solver->start_from(u);
         return inside;
       }
@@ -450,9 +466,9 @@ namespace Debond
         LoadFactors       near = first;
         near.displacements +=
           part_for_stiffness * (next.displacements - first.displacements);
-        PathFollower inside = from(0, progress.u, progress.memory);
-        if (inside.solve(near, [](const auto &, const auto &) {}))
-          progress.stiffness = inside.stiffness_of_last_step();
+        const auto inside = from(0, progress.u, progress.memory);
+        if (inside->solve(near, [](const auto &, const auto &) {}))
+          progress.stiffness = inside->stiffness_of_last_step();
         solver->start_from(progress.u);
       }
 
@@ -728,8 +744,10 @@ namespace Debond
                                             at_step ? &*at_step : nullptr));
         judge(minimum, state.verification, step);
         steps.push_back(step);
-        if (begun)
+        if (begun && step.message.empty())
           keep_if_unresolved(std::move(*begun));
+        else if (steps.size() == 1 && step.message.empty() && seeks_peak())
+          probe_stiffness();
         tell(bonds, state.verification, observer);
       }
 
@@ -882,7 +900,10 @@ namespace Debond
       const Scene<dim>               &scene;
       const PathTable<dim>            table;
       const Interruption             &interruption = Interruption::by_signal();
-      LoadPathParameters              alone;      ///< for paths inside of steps
+
+      /// For the paths that look for the largest force inside of steps.
+      LoadPathParameters inside_of_step;
+
       std::shared_ptr<ContactSolver<dim>> solver; ///< see make_solver()
     };
   } // namespace
