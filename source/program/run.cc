@@ -107,8 +107,8 @@ namespace Debond
       {
         // The loop over the meshes follows a load path on each of them, but
         // without what only the last mesh gets. That is done below, on the mesh
-        // that the loop ended with; all steps are there already and are not
-        // solved again.
+        // that the loop ended with; the steps are there already and are not
+        // solved again, but for a factor at which the body detaches.
         Answer<dim> answer = std::move(begun);
         if (parameters.accuracy.is_adaptive())
           {

@@ -137,8 +137,8 @@ namespace Debond
   RunOutput<dim>::write(const RunResult<dim> &result)
   {
     // The first file that cannot be written ends the list. Those before it are
-    // complete and stay, but the log does not list them, there is no summary
-    // then, and the exit code is 5.
+    // complete, stay, and are listed in the log; there is no summary then, and
+    // the exit code is 5.
     return attempt([&]() {
       write_files(files(*result.scene, result), output.directory, written);
     });

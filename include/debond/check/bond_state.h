@@ -11,7 +11,7 @@ namespace Debond
   /// numbers that follow.
   enum class BondState : int
   {
-    broken_but_closed = -1, ///< s = 0, where bonds broke for good
+    broken_but_closed = -1, ///< s = 0, where bonds broke for good, or by slip
     contact,                ///< s = 0
     bonded,
     kink, ///< between two pieces

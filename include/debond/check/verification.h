@@ -74,22 +74,22 @@ namespace Debond
     /**
      * Largest distance to the contact law over all contact nodes: the least
      * delta for which the node's force is within delta F_i of what the law
-     * allows at displacements within delta L_i of u_nu. Of bonds that shear the
+     * allows at displacements within delta L_i of s. Of bonds that shear the
      * same is asked of each component of the force.
      *
      * F_i is what a bond of the node can bear, a M (the largest of all
-     * branches) times the node's measure,
-     * but not more than the largest contact force on a node, so that a law
-     * with M far above all displacements is checked as well; forces below a
-     * thousandth of the largest reaction do not count as the largest one. L_i
-     * is the displacement at which bonds pull with F_i, F_i / (a measure) <= M,
-     * M being the first one at which they change their branch, but not more
-     * than the largest displacement of the body. Without adhesion F_i is the
-     * largest contact force and L_i the largest displacement.
+     * branches) times the node's measure, but not more than the largest contact
+     * force on a node, so that a law with M far above all displacements is
+     * checked as well; forces below a thousandth of the largest reaction do not
+     * count as the largest one. L_i is the displacement at which bonds pull
+     * with F_i, F_i / (a measure) <= M, M being the first one at which they
+     * change their branch, but not more than the largest displacement of the
+     * body. Without adhesion F_i is the largest contact force and L_i the
+     * largest displacement.
      *
      * What bonds bear can be less than the rounding of A u - f, for which no
      * displacement in double precision is to blame. So F_i is at least 1e4
-     * times ElasticProblem::residual_rounding(): bonds weaker than that are
+     * times ElasticFields::residual_rounding(): bonds weaker than that are
      * not resolved, and rounding alone is a violation of 1e-4. The same holds
      * of what rounding of w = u - gap makes, as long as that is below 1e-7 of
      * the largest force, or all that there is; and, where a change of
@@ -170,7 +170,7 @@ namespace Debond
   /// bonds that are as @p adhesion has them.
   ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
-  /// largest |u_nu|, also that which bonds remember) of 0 and the kinks count
+  /// largest |s|, also that which bonds remember) of 0 and the kinks count
   /// as contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   ///

@@ -20,11 +20,11 @@ namespace Debond
    * in restart.state, which a run leaves in its output directory, see RunState.
    *
    * The output directory is created, and the effective parameters are written
-   * there, before the solve, so that a directory without access costs no
-   * time. Errors of the scene are thrown as BadInput before anything is
-   * written; all other outcomes are told by the exit code and by
-   * a line on std::cerr. To be called by all ranks, which share the scene: the
-   * first one writes log, messages and files.
+   * there, before the solve, so that a directory without access costs no time.
+   * Errors of the scene are thrown as BadInput before anything is written; all
+   * other outcomes are told by the exit code and by a line on std::cerr. To be
+   * called by all ranks, which share the scene: the first one writes log,
+   * messages and files.
    */
   template <int dim>
   ExitCode

@@ -13,7 +13,7 @@ namespace Debond
   /// with what it started from.
   struct UnresolvedStep
   {
-    unsigned int first; ///< the number of the step before, from 0
+    unsigned int first; ///< the place of the step before in the list of steps
     double       bound; ///< of the force
     DofVector    u;
     BondMemory   memory;
@@ -25,7 +25,8 @@ namespace Debond
   template <int dim>
   struct LoadPathPeak
   {
-    /// Where it is. The force is LoadPathState::unit_displacement_work.
+    /// Where it is. The force is the size of
+    /// LoadPathState::unit_displacement_work.
     LoadPathStep<dim> step;
 
     /// It may be larger by this part of itself, between the steps that were
@@ -93,7 +94,8 @@ namespace Debond
     PathProgress<dim>              path;   ///< of a single load without steps
     std::vector<LoadPathStep<dim>> arc;
 
-    /// There is one if supports move and the loads stay.
+    /// There is one if supports move and the loads stay, unless the scene does
+    /// not want it (Load path/Resolve) or there is no force at all.
     std::optional<LoadPathPeak<dim>> peak;
 
     /// The bonds as the path has left them, with references to the scene; null

@@ -127,8 +127,8 @@ namespace Debond
                Progress                    &progress) override
       {
         // All factors share one factorisation: another load costs its two
-        // triangular solves.
-        // Bonds that have broken for good have another energy at s = 0.
+        // triangular solves. The whole load costs none, unless bonds have
+        // broken for good, which have another energy at s = 0.
         const bool is_whole =
           factors == LoadFactors(1.) &&
           bonds.value_at_zero() == scene.adhesion().value_at_zero();

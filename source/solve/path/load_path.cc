@@ -26,7 +26,7 @@ namespace Debond
     /// operations.
     constexpr double least_of_step = 1e7, of_step = 4000.;
 
-    /// A step is halved so often for the largest force.
+    /// A step is halved so often at most for the largest force.
     constexpr unsigned int most_halvings = 16;
 
     /// The part of a step that tells the stiffness at its beginning.
@@ -272,7 +272,6 @@ namespace Debond
                 point.which.search_trials,
               to_string(point.which.kind));
           });
-        // A search that its limit has cut has a note.
         // What limits of work have left undone is said once for all factors,
         // and what else a search or a proof notes once as well.
         unsigned int          n_cut = 0;
@@ -423,7 +422,9 @@ namespace Debond
                 0.5 * (first.displacements + last.displacements)};
       }
 
-      /// Bonds that heal have another largest force on each way.
+      /// Whether the largest force is sought: it belongs to the factor of
+      /// displacements, so that only this one may change. There has to be a
+      /// step.
       bool
       seeks_peak() const
       {
@@ -456,7 +457,8 @@ namespace Debond
         return inside;
       }
 
-      /// The stiffness at the first factor, before bonds break.
+      /// The stiffness at the first factor, by a small part of the way to the
+      /// second one, on which hardly any bonds break.
       void
       probe_stiffness()
       {
@@ -510,7 +512,8 @@ namespace Debond
 
       /// Goes to @p last in steps that are halved as long as the force inside
       /// of one may be larger than that of the @p peak by more than the part @p
-      /// resolve of it. Returns whether there is a state.
+      /// resolve of it, at most @p halvings times. The peak gets what they
+      /// find. Returns whether there is a state at @p last.
       bool
       walk(const LoadFactors  last,
            const double       resolve,

@@ -14,8 +14,7 @@ namespace Debond
    * one load after the other, each time from the point before, and to begin
    * with from the body at rest. What does not depend on loads is made once: a
    * factorisation of A, or a multigrid cycle. All functionals are J, with the
-   * energy of what is prescribed. All functions but point() are to be called by
-   * all ranks.
+   * energy of what is prescribed. All functions are to be called by all ranks.
    */
   template <int dim>
   class ContactSolver

@@ -19,8 +19,9 @@ namespace Debond
   std::string
   to_string(const MinimumKind kind);
 
-  /// stationary, local minimum, or global if there is no adhesion and J is
-  /// convex. Where bonds soften, a minimum is known by S and g of @p condensed.
+  /// stationary, local minimum, or global if J is convex: without contact
+  /// nodes, or with a law of one piece, such as none. Where bonds soften, a
+  /// minimum is known by S and g of @p condensed.
   template <int dim>
   MinimumKind
   kind_without_search(const AdhesionIntegral<dim> &adhesion,

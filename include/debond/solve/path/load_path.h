@@ -20,12 +20,13 @@ namespace Debond
    * with its start: the segment to the minimum of a majorant lies below it.
    *
    * The path ends early with a factor that is not solved or whose result is not
-   * verified, and after the current factor if a signal arrives. Then comes the
-   * global branch, if a factorisation gives the problem on the contact normals,
-   * and the scene's arc, see follow_arc(), from the first factor. The status of
-   * the solution is success if all factors were solved, whether or not all of
-   * them are verified. A table of the factors is printed to @p out unless that
-   * is null.
+   * verified, and before the current factor if a signal arrives in it, unless
+   * that is the first one. Then come the largest force, for which steps are
+   * done again in smaller ones, the global branch, if a factorisation gives the
+   * problem on the contact normals, and the scene's arc, see follow_arc(), from
+   * the first factor. The status of the solution is success if all factors were
+   * solved, whether or not all of them are verified. A table of the factors is
+   * printed to @p out unless that is null.
    *
    * @p begun has the scene, how it is solved, and the steps that an earlier run
    * or call has done on this mesh; the observer sees the last of them again.
