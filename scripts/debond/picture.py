@@ -13,13 +13,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 
-from . import plots, vtu
+from . import plots, prm, vtu
 from .plots import plt
 from .prm import BadInput
 from .runs import bodies, read_csv, read_summary
 
-ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
-         "frameon": False}
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.), "frameon": False}
 # The largest displacement in a picture, relative to the body's size, and what
 # colours leave out: stress at corners grows without bound with refinement.
 LARGEST_SHOWN = 0.06
@@ -28,10 +27,13 @@ CUT = 0.995
 NEGLIGIBLE = 1e-6
 PIXELS = 1000.  # about the width of a body
 MOST_VECTORS = 20000  # more polygons are an image in SVG files, too
+MOST_SPLIT = 8000  # cells are drawn as about so many triangles, if they are fewer
+LONGEST = 12.  # what is longer than so many times its height is stretched
 FROM_ABOVE, FROM_BELOW = (-65, 25), (-65, -25)  # azimuth and elevation
 STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
           "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray",
           "held": "0.8"}
+PARTS = "damage", "shear_damage", "mode_mixity"  # fields from 0 to 1
 OTHER_STATE = "tab:purple"
 FORCES = {("mm", "MPa"): "N", ("mm", "N/mm²"): "N", ("mm", "GPa"): "kN",
           ("m", "Pa"): "N", ("m", "kPa"): "kN", ("m", "MPa"): "MN",
@@ -48,7 +50,7 @@ COLUMNS = [
     ("normal_force", "normal force (positive: pressed)", "force"),
     ("contact_reaction_(.)", r"force of the foundation, \1", "force"),
     ("clamped_reaction_(.)", r"force of all supports, \1", "force"),
-    ("reaction_(.*)_(.)", r"force of support \1, \2", "force"),
+    ("reaction_(.*)_(.)", r"reaction of \1, \2", "force"),
     ("mean_(.*)_(.)", r"mean displacement of \1, \2", "length"),
     ("probe_(.*)_(.)", r"displacement of probe \1, \2", "length"),
     ("broken_zone", "size of the broken zone", "zone"),
@@ -130,10 +132,13 @@ class Run:
     def legend(self, axes, before, **style):
         """What the colours of states mean, with their parts of the boundary."""
         parts = self.contact.parts() if self.contact else {}
-        axes.legend(handles=[*before, *(
+        handles = [*before, *(
             Line2D([], [], color=STATES.get(state, OTHER_STATE), label=state + (
                 f" ({part:.1%})" if state != "held" else ""), **style)
-            for state, part in parts.items())], **ABOVE)
+            for state, part in parts.items())]
+        rows = -(-len(handles) * axes.get_gridspec().ncols // 5)
+        axes.legend(handles=handles, ncol=-(-len(handles) // (rows or 1)), **ABOVE)
+        return rows
 
 
 def colours_of(states):
@@ -164,21 +169,37 @@ def views(body, contact, wanted):
     return result
 
 
-def colour(axes, values, title, signed="RdBu_r"):
+def is_rounding(values, usual):
+    return not numpy.max(abs(values), initial=0.) > vtu.ROUNDING * usual
+
+
+def colour(axes, values, title, signed="RdBu_r", usual=0., limits=None):
     """A scale of colours for values, which on both sides of 0 has the colours
-    `signed`, with a bar that says what it leaves out."""
-    low, top = (largest if cut <= 0 or largest < 1.2 * cut else cut
-                for sizes in (-values, values)
-                for cut, largest in [(numpy.quantile(sizes, CUT), sizes.max())])
-    cut, ticks = numpy.array([values < -low, values > top]), None
-    if cut.any():
-        title += (f"; {cut.sum() / len(values):.1%} cut off, the values are "
-                  f"{values.min():.3g} to {values.max():.3g}")
-    scale = ScalarMappable(colors.Normalize(0., top or 1.))
-    if low > 1e-9 * top:
-        low, top = (max(side, 1e-3 * max(low, top)) for side in (low, top))
-        scale = ScalarMappable(colors.TwoSlopeNorm(0., -low, top), signed)
-        ticks = [-low, -low / 2, 0., top / 2, top]
+    `signed`, with a bar that says what it leaves out; one colour for what is the same
+    everywhere but for rounding."""
+    cut, ticks, size = numpy.zeros((2, 1), bool), None, abs(values).max()
+    if limits:
+        scale = ScalarMappable(colors.Normalize(*limits))
+    elif is_rounding(values, usual) or numpy.ptp(values) <= NEGLIGIBLE * size:
+        title += ": 0 to rounding" if is_rounding(values, usual) else (
+            f": {values.mean():.4g} everywhere")
+        scale = ScalarMappable(colors.Normalize(0., 1.), colors.ListedColormap(["0.8"]))
+        ticks = []
+    else:
+        low, top = (largest if cut <= 0 or largest < 1.2 * cut else cut
+                    for sizes in (-values, values)
+                    for cut, largest in [(numpy.quantile(sizes, CUT), sizes.max())])
+        cut = numpy.array([values < -low, values > top])
+        if cut.any():
+            least, most = (0. if is_rounding(end, size) else end
+                           for end in (values.min(), values.max()))
+            title += (f"\n{cut.sum() / len(values):.1%} cut off, the values are "
+                      f"{least:.3g} to {most:.3g}")
+        scale = ScalarMappable(colors.Normalize(0., top))
+        if low > 1e-9 * top:
+            low, top = (max(side, 1e-3 * max(low, top)) for side in (low, top))
+            scale = ScalarMappable(colors.TwoSlopeNorm(0., -low, top), signed)
+            ticks = [-low, -low / 2, 0., top / 2, top]
     axes[0].figure.colorbar(
         scale, ax=axes, orientation="horizontal", shrink=0.7, aspect=45, label=title,
         ticks=ticks, format="%.3g" if ticks else None,
@@ -186,12 +207,30 @@ def colour(axes, values, title, signed="RdBu_r"):
     return scale
 
 
-def draw_body(run, field, wanted):
+def stretch(axes, width, height):
+    """Gives axes one scale for both directions, unless they were a sliver."""
+    factor = max(1., float(f"{width / height / LONGEST:.0e}"))
+    if factor > 1:
+        axes.set_ylabel(f"{axes.get_ylabel()}\nstretched x {factor:g}")
+    axes.set_aspect(factor)
+    axes.grid(False)
+    axes.autoscale_view()
+
+
+def split(n):
+    """A triangle as n² equal ones: of the corners of these their shares in its own."""
+    corners = numpy.array([corner for i in range(n) for j in range(n - i) for corner in [
+        [(i, j), (i + 1, j), (i, j + 1)], [(i + 1, j), (i + 1, j + 1), (i, j + 1)]][
+            :2 if i + j < n - 1 else 1]]) / n
+    return numpy.concatenate([corners, 1 - corners.sum(axis=2, keepdims=True)], axis=2)
+
+
+def draw_body(run, field, wanted, averaged):
     files = run.files("body")
     if not files:
         return
     body = vtu.Body(files)
-    u, values = body.at_points("displacement"), body.in_cells(field)
+    u, values = body.at_points("displacement"), body.at_corners(field, averaged)
     largest = numpy.linalg.norm(u, axis=1).max()
     shown = max(largest, run.largest)  # all steps of a path in nearly one scale
     scale = LARGEST_SHOWN * body.size / shown if shown > 1e-12 * body.size else 1.
@@ -202,11 +241,14 @@ def draw_body(run, field, wanted):
     figure, all_axes = plt.subplots(len(panels), squeeze=False, figsize=(
         10., min(2.4 + len(panels) * 10. * height / width, 9.)))
     what = {"displacement": "length", "region": ""}.get(field, "stress")
-    colours = colour([*all_axes.flat], values, field.replace("_", " ").replace(
-        "von mises", "von Mises stress") + run.units[what]).to_rgba(values)
+    words = field.replace("_", " ").replace("von mises", "von Mises stress")
+    to_rgba = colour([*all_axes.flat], values.ravel(), words + run.units[what] +
+                     ", averaged at nodes" * (averaged and what == "stress"),
+                     usual=body.usual_stress() if "stress" in words else
+                     1e-3 * body.size * (what == "length")).to_rgba
     length, before = run.units["length"], []
     for axes, panel in zip(all_axes.flat, panels):
-        draw_panel(axes, run, body, (body.points + scale * u) @ panel.T, colours,
+        draw_panel(axes, run, body, (body.points + scale * u) @ panel.T, values, to_rgba,
                    PIXELS / max(width, len(panels) * height / 0.7))
         if body.dim == 3:
             draw_box(axes, body.points, panel, length[1:])
@@ -215,20 +257,19 @@ def draw_body(run, field, wanted):
                 body.points[body.boundary()[0]][:, :, :2], colors="0.6",
                 linewidths=0.8, zorder=0.5, label="at rest"))]
             axes.set(xlabel="x" + length, ylabel="y" + length)
-        axes.set_aspect("equal")
-        axes.grid(False)
-        axes.autoscale_view()
-    run.legend(all_axes[0, 0], before, lw=3)
+        stretch(axes, width, height if body.dim == 2 else width)
+    rows = run.legend(all_axes[0, 0], before, lw=3)
     all_axes[0, 0].set_title(
         f"{run.title}displacement x {scale:g}, the largest is {largest:.3g}"
-        f"{length[1:]}", fontsize=9, pad=22)
+        f"{length[1:]}", fontsize=9, pad=8 + 14 * rows)
     run.save(figure, "body")
 
 
-def draw_panel(axes, run, body, moved, colours, pixels):
+def draw_panel(axes, run, body, moved, values, to_rgba, pixels):
     """The cells in 2D, in 3D the faces that the viewer sees, from behind to the
     front; lines between materials; the contact boundary in the colours of its
-    states. Lines of cells fade where these are small."""
+    states. Lines of cells fade where these are small, and large ones are split for
+    the values between their corners."""
     faces, owners = body.boundary()
     triangles, cells = body.cells, numpy.arange(len(body.cells))
     if body.dim == 3:
@@ -247,17 +288,24 @@ def draw_panel(axes, run, body, moved, colours, pixels):
             parts[:, :, :2], colors=of_states, linewidths=3., capstyle="round"))
         parts = []
 
-    corners, colours = moved[triangles], colours[cells]
+    corners = moved[triangles]
     sides = (numpy.roll(corners, 1, axis=1) - corners)[:, :, :2]
     height = pixels * abs(numpy.linalg.det(sides[:, :2])) / (
         numpy.linalg.norm(sides, axis=2).max(axis=1) + 1e-300)
-    edges = colours.copy()
-    edges[:, :3] *= 1 - 0.35 * numpy.clip((height - 4.) / 6., 0., 1.)[:, None]
+    large = height > 4.
+    edges = [(0., 0., 0., min(0.35, 0.06 * (h - 4.))) for h in height[large]]
+    n = int(numpy.clip((MOST_SPLIT / (len(corners) or 1))**0.5, 1, 8)) if (
+        values != values[:, :1]).any() else 1
+    own = (body.cells[cells][:, None] == triangles[:, :, None]).argmax(axis=2)
+    colours = to_rgba(numpy.einsum("sck,tk->ts", split(n) / 3, numpy.take_along_axis(
+        values[cells], own, axis=1)).ravel())
+    small = numpy.einsum("sck,tkd->tscd", split(n), corners).reshape(-1, 3, 3)
     black = [(0., 0., 0., 1.)] * len(lines)
     depth, near = corners[:, :, 2].mean(axis=1), 0.022 * body.size
     drawn = [(polygon[:, :2], fill, edge, width, place)
              for *layer, width in (
-                 (corners, colours, edges, depth, 0.3),
+                 (small, colours, colours, depth.repeat(n * n), 0.3),
+                 (corners[large], numpy.zeros((len(edges), 4)), edges, depth[large], 0.3),
                  (parts, of_states, of_states, depth[of_faces], 0.8),
                  (moved[lines], black, black, near + moved[lines, 2].mean(axis=1), 0.6))
              for polygon, fill, edge, place in zip(*layer)]
@@ -289,17 +337,32 @@ def draw_box(axes, points, panel, length):
     axes.axis("off")
 
 
-def draw_contact(run):
-    if not run.contact or (run.contact.state == "held").all():
+def draw_contact(run, wanted):
+    """Below each other, or a surface in as many columns as fit it on a page."""
+    contact = run.contact
+    if not contact or (contact.state == "held").all():
         return
-    n, height = run.contact.dim, 6.
-    if n == 3:
-        low, high = numpy.sort(numpy.ptp(run.contact.nodes, axis=0))[1:]
-        height = min(3.6 + 22. * low / high, 13.)
-    rows = n + 2 * ("slip" in run.contact.mesh.point_data)
-    figure, all_axes = plt.subplots(rows, 1, figsize=(9, height * rows / n),
-                                    sharex=True)
-    (draw_line if n == 2 else draw_surface)(run, all_axes)
+    M = contact.at_nodes("bond_threshold")
+    usual = {what: values[numpy.isfinite(values)].max(initial=0.) for what, values in (
+        ("length", M), ("stress", M * contact.at_nodes("bond_stiffness")), ("", 0. * M))}
+    known = {"u_nu" if contact.dim == 2 else "gap": "length", "normal_traction": "stress",
+             "slip": "length", "shear_traction": "stress"}
+    rows = [(name, {"u_nu": "normal displacement", "gap": "opening"}.get(
+        name, name.replace("_", " ")) + run.units[what], usual[what])
+            for name, what in {**known, **{name: known.get(name, "") for name in wanted}}.items()
+            if name in contact.mesh.point_data]
+    n, columns, height = len(rows), 1, 3.
+    if contact.dim == 3:
+        low, high = numpy.sort(numpy.ptp(contact.nodes, axis=0))[1:]
+        n, height = n + 1, 8.5 * max(low / high, 1. / LONGEST)
+        columns = next(c for c in (1, 2, 3) if c == 3 or -(-n // c) * (height / c + 1) < 12)
+        height = height / columns + 1.
+    figure, all_axes = plt.subplots(
+        -(-n // columns), columns, figsize=(9, height * -(-n // columns)),
+        sharex=True, sharey=contact.dim == 3, squeeze=False)
+    for axes in all_axes.flat[n:]:
+        axes.remove()
+    (draw_line if contact.dim == 2 else draw_surface)(run, all_axes.flat[:n], rows)
     if run.title:
         figure.suptitle(run.title.strip(), fontsize=9)
     run.save(figure, "contact")
@@ -317,16 +380,12 @@ def along(vectors, contact, pieces):
     return result
 
 
-def draw_line(run, all_axes):
-    contact, length, stress = run.contact, run.units["length"], run.units["stress"]
+def draw_line(run, all_axes, rows):
+    contact = run.contact
     name, pieces = contact.pieces()
     # Where bonds are, which have no stiffness if they are rigid at first.
     M, stiffness = map(contact.at_nodes, ("bond_threshold", "bond_stiffness"))
-    for axes, (key, label, usual) in zip(all_axes, (
-            ("u_nu", "normal displacement" + length, M),
-            ("normal_traction", "normal traction" + stress, M * stiffness),
-            ("slip", "slip" + length, M),
-            ("shear_traction", "shear traction" + stress, M * stiffness))):
+    for axes, (key, label, usual) in zip(all_axes, rows):
         values = contact.at_nodes(key)
         if values.ndim > 1:
             values = along(values, contact, pieces)
@@ -338,9 +397,11 @@ def draw_line(run, all_axes):
                 axes.axvline(x[-1], color="k", ls=":", lw=0.8)
         axes.axhline(0, color="k", lw=0.6)
         axes.set_ylabel(label)
-        usual = numpy.nanmax(usual)
-        if numpy.nanmax(abs(values)) < 1e-9 * usual:  # rounding
-            axes.set_ylim(-usual, usual)
+        if key in PARTS:
+            axes.set_ylim(-0.03, 1.03)
+        elif is_rounding(values[contact.state != "held"], usual):
+            axes.set_ylim(-(usual or 1.), usual or 1.)
+            axes.text(0.5, 0.9, "0 to rounding", ha="center", transform=axes.transAxes)
     breaks = numpy.where(
         (M > 0) & ((stiffness > 0) | ~(stiffness > 0).any()) &
         (M < 3 * abs(contact.at_nodes("gap")).max()),
@@ -349,30 +410,30 @@ def draw_line(run, all_axes):
     for piece, x in pieces if (breaks < numpy.inf).any() else ():
         before = all_axes[0].plot(
             x, breaks[piece], color="0.4", ls="--", lw=1, drawstyle="steps-mid",
-            label="bonds break" + " without slip" * (len(all_axes) > 2))
+            label="bonds break" + " without slip" * ("slip" in [row[0] for row in rows]))
     run.legend(all_axes[0], before, marker="o", ls="", ms=4)
-    all_axes[-1].set_xlabel(name + length)
+    all_axes[-1].set_xlabel(name + run.units["length"])
     all_axes[1].set_title("positive: pressed, negative: held", fontsize=8,
                           loc="right")
 
 
-def draw_surface(run, all_axes):
-    """Opening, traction, slip and shear traction if bonds shear, and states, in the plane
-    in which the surface is widest."""
-    contact, length, stress = run.contact, run.units["length"], run.units["stress"]
-    wide = sorted(numpy.argsort(numpy.ptp(contact.nodes, axis=0))[1:])
+def draw_surface(run, all_axes, rows):
+    """The opening, the other rows and the states, in the plane in which the surface is
+    widest, and its longer side from left to right."""
+    contact, length = run.contact, run.units["length"]
+    size = numpy.ptp(contact.nodes, axis=0)
+    wide = numpy.argsort(-size, kind="stable")[:2]
     held = contact.state == "held"
     triangles = contact.mesh.cells[0].data[:, [[0, 1, 2], [0, 2, 3]]]
-    for axes, (name, title, shown) in zip(all_axes[:-1], (
-            ("gap", "opening" + length, held | True),
-            ("normal_traction", f"normal traction{stress} (positive: "
-             "pressed, negative: held)", ~held),
-            ("slip", "slip" + length, ~held),
-            ("shear_traction", "shear traction" + stress, ~held))):
+    for axes, (name, title, usual) in zip(all_axes, rows):
+        shown = ~held | (name == "gap")
+        if name == "normal_traction":
+            title += "\n(positive: pressed, negative: held)"
         values = contact.mesh.point_data[name]
         if values.ndim > 1:
             values = numpy.linalg.norm(values, axis=1)
-        scale = colour([axes], values[contact.first][shown], title, "RdBu")
+        scale = colour([axes], values[contact.first][shown], title, "RdBu", usual,
+                       (0., 1.) if name in PARTS else None)
         axes.tripcolor(*contact.mesh.points[:, wide].T, values,
                        triangles=triangles[shown].reshape(-1, 3), shading="gouraud",
                        cmap=scale.cmap, norm=scale.norm, rasterized=True)
@@ -382,54 +443,117 @@ def draw_surface(run, all_axes):
             contact.polygons[shown][:, :, wide], facecolors=colours_of(
                 contact.state[shown]), edgecolors="face", linewidths=0.8,
             rasterized=len(held) > MOST_VECTORS))
-        axes.grid(False)
-        axes.set(aspect="equal", ylabel="xyz"[wide[1]] + length)
-        axes.autoscale_view()
+        axes.set_ylabel("xyz"[wide[1]] + length)
+        stretch(axes, *size[wide])
+        axes.label_outer()
     all_axes[-1].set_xlabel("xyz"[wide[0]] + length)
     run.legend(all_axes[-1], [], lw=5)
 
 
-def draw_path(run, wanted):
-    """A load path: four pictures of it, or the wanted 'Y over X'."""
+def force_over_displacement(path):
+    """The columns of the support that moves, or of the largest force and displacement in
+    the same direction; [] if nothing bears a force."""
+    def sizes(pattern):
+        found = {name: numpy.nanmax(abs(path[name]), initial=0.) for name in path
+                 if re.fullmatch(pattern, name)}
+        return {name: size for name, size in found.items()
+                if not is_rounding(size, max(found.values()))}
+
+    forces, means = sizes("reaction_.*_.|contact_reaction_."), sizes("mean_.*_.")
+    pairs = [(force[8:] == mean[4:], force[0] == "r", forces[force], means[mean],
+              force, mean) for force in forces for mean in means if force[-1] == mean[-1]]
+    return [" over ".join(max(pairs)[4:])] if pairs else []
+
+
+def draw_curve(axes, run, x, y, label):
+    """Of a load path Y over X, or with a label only the states that it went through."""
     path = run.load_path
-    if not path:
+    for name in y, x:
+        if name not in path:
+            near = ", ".join(difflib.get_close_matches(name, path) or ["step"])
+            raise BadInput(f"load_path.csv has no column '{name}', but {near}, "
+                           "...; its first line has them all")
+        if path[name].dtype.kind != "f" or numpy.isnan(path[name]).all():
+            raise BadInput(f"{name} of load_path.csv has no numbers here")
+    if label:
+        axes.plot(path[x], path[y], ".-", ms=4, label=label)
         return
-    arc = read_csv(os.path.join(run.directory, "load_path_arc.csv"))
-    factor = run.factor
-    largest = max((name for name in path if name.startswith("reaction_")),
-                  key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
-    last = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
-    if factor == "factor" and path["unit_load_work"].any():
-        last = ["normal_force over factor", "factor over unit_load_work"]
-    kinds = wanted or [f"broken_part over {factor}", f"J over {factor}", *last]
-    figure, all_axes = plt.subplots(
-        -(-len(kinds) // 2), min(len(kinds), 2), squeeze=False,
-        figsize=(10, 0.6 + 3.4 * -(-len(kinds) // 2)))
-    rises = numpy.diff(path[factor]) >= 0
+    if not numpy.isnan(path.get(f"global_{y}", numpy.nan)).all():
+        axes.plot(path.get(f"global_{x}", path[x]), path[f"global_{y}"],
+                  "--", color="0.5", label="lowest minimum")
+    rises = numpy.diff(path[run.factor]) >= 0
     turns = [0, *(numpy.nonzero(numpy.diff(rises))[0] + 1), len(rises)]
+    for begin, end in zip(turns, turns[1:]):
+        axes.plot(path[x][begin:end + 1], path[y][begin:end + 1], ".-", ms=4,
+                  label="unloading" if begin < end and not rises[begin]
+                  else "loading")
+    arc = read_csv(os.path.join(run.directory, "load_path_arc.csv"))
+    if arc:
+        axes.plot(arc[x], arc[y], ":", color="k", lw=1, label="arc")
+
+
+def draw_path(runs, wanted, labels=("",)):
+    """Of load paths, with labels if there are several: the wanted 'Y over X', four
+    pictures for 'all', or the force over the displacement with what is broken."""
+    run, path, factor = runs[0], runs[0].load_path, runs[0].factor
+    default = [] if wanted else force_over_displacement(path)
+    kinds = default or wanted
+    if kinds in ([], ["all"]):
+        largest = max((name for name in path if name.startswith("reaction_")),
+                      key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
+        kinds = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
+        if factor == "factor" and path["unit_load_work"].any():
+            kinds = ["normal_force over factor", "factor over unit_load_work"]
+        kinds = [f"broken_part over {factor}", f"J over {factor}", *kinds]
+    figure, all_axes = plt.subplots(
+        -(-len(kinds) // 2), min(len(kinds), 2), squeeze=False, figsize=(
+            7 if default else 10, len(default) + 0.6 + 3.4 * -(-len(kinds) // 2)))
     for axes, kind in zip(all_axes.flat, kinds):
         y, _, x = kind.partition(" over ")
-        for name in y, x:
-            if name not in path:
-                near = ", ".join(difflib.get_close_matches(name, path) or ["step"])
-                raise BadInput(f"load_path.csv has no column '{name}', but {near}, "
-                               "...; its first line has them all")
-            if path[name].dtype.kind != "f" or numpy.isnan(path[name]).all():
-                raise BadInput(f"{name} of load_path.csv has no numbers here")
-        if not numpy.isnan(path.get(f"global_{y}", numpy.nan)).all():
-            axes.plot(path.get(f"global_{x}", path[x]), path[f"global_{y}"],
-                      "--", color="0.5", label="lowest minimum")
-        for begin, end in zip(turns, turns[1:]):
-            axes.plot(path[x][begin:end + 1], path[y][begin:end + 1], ".-", ms=4,
-                      label="unloading" if begin < end and not rises[begin]
-                      else "loading")
-        if arc:
-            axes.plot(arc[x], arc[y], ":", color="k", lw=1, label="arc")
+        for run, label in zip(runs, labels):
+            draw_curve(axes, run, x, y, label)
         axes.set(xlabel=words_for(x, run.units), ylabel=words_for(y, run.units))
     for axes in all_axes.flat[len(kinds):]:
         axes.remove()
-    all_axes[0, 0].legend()
-    run.save(figure, "load_path")
+    if default:
+        axes = all_axes[0, 0]
+        axes.axhline(0, color="k", lw=0.6)
+        axes.axvline(0, color="k", lw=0.6)
+        for name, invert in (x, axes.invert_xaxis), (y, axes.invert_yaxis):
+            if numpy.nanmax(path[name]) < -numpy.nanmin(path[name]):
+                invert()
+        if x[4:] == y[8:]:  # of the support that moves
+            axes.set_xlabel(axes.get_xlabel().replace("mean ", ""))
+        broken = sum(path[name] for name in path if re.fullmatch(
+            "(?!global_|contact_|bonded_|free_).*_part", name))
+        if len(runs) == 1 and broken.any():
+            figure.colorbar(axes.scatter(
+                path[x], path[y], c=broken, vmin=0., s=25, zorder=3, edgecolors="k",
+                linewidths=0.4), label="broken or softening part of the contact boundary")
+        end = run.summary["load_path"]["comes_off_at"]
+        if len(runs) == 1 and end is not None:
+            axes.annotate(f"comes off at factor {end:.4g}", (path[x][-1], path[y][-1]),
+                          (-8, 0), ha="right", textcoords="offset points")
+    if len(all_axes[0, 0].get_legend_handles_labels()[1]) > 1:
+        all_axes[0, 0].legend()
+    return figure
+
+
+def draw_together(directories, file, units, wanted):
+    """The curves of several load paths in the same axes, named by what differs between
+    their scenes if that is little."""
+    runs = [Run(directory, None, units) for directory in directories]
+    if not all(run.load_path for run in runs):
+        raise BadInput("--together is for load paths")
+    scenes = [prm.read(os.path.join(directory, "parameters.prm"))
+              for directory in directories]
+    names = [name for name in scenes[0] if not name.startswith("Output/") and
+             len({scene.get(name) for scene in scenes}) > 1]
+    labels = [", ".join(f"{name.rpartition('/')[2]} = {scene.get(name)}" for name in names)
+              for scene in scenes]
+    if len(set(labels)) < len(runs) or max(map(len, labels)) > 60:
+        labels = directories
+    plots.save(draw_path(runs, wanted, labels), *os.path.split(file))
 
 
 def draw_history(run):
@@ -456,16 +580,20 @@ def draw_history(run):
         run.save(figure, "proof")
 
 
-def draw(directory, units="", field="von_mises", path=(), view=(), step=None):
+def draw(directory, units="", field="von_mises", path=(), view=(), step=None,
+         averaged=True):
     """All that a directory has something of, or the body and its contact
     boundary in a step. `units`: 'LENGTH, STRESS'; `view`: degrees."""
     run = Run(directory, step, units)
     if path and (step or not run.load_path):
         raise BadInput("--path is for load paths, and not for a --step of them")
-    draw_body(run, field, view)
-    draw_contact(run)
+    of_contact = run.contact and field != "displacement" and (
+        field in run.contact.mesh.point_data)
+    draw_body(run, "von_mises" if of_contact else field, view, averaged)
+    draw_contact(run, [field] if of_contact else [])
     if not step:
-        draw_path(run, path)
+        if run.load_path:
+            run.save(draw_path([run], path), "load_path")
         draw_history(run)
 
 
@@ -482,9 +610,15 @@ def main():
     parser.add_argument("directories", metavar="DIRECTORY", nargs="+")
     parser.add_argument("--units", default="", help='of length and stress, as in '
                         '"mm, MPa"; those of forces and energies follow')
-    parser.add_argument("--field", default="von_mises", help="of body.vtu")
+    parser.add_argument("--field", default="von_mises", help="of body.vtu, or of "
+                        "contact.vtu as in 'damage'")
+    parser.add_argument("--cells", action="store_true", help="stresses as each cell has "
+                        "them, not averaged at nodes")
     parser.add_argument("--path", default=[], action="append", help="columns of "
-                        'load_path.csv, as in "reaction_left_y over factor"')
+                        'load_path.csv, as in "reaction_left_y over factor"; or all: '
+                        "broken part, J, and what loads and supports do")
+    parser.add_argument("--together", metavar="FILE", help="draws the curves of all "
+                        "directories in one pair of axes, as FILE.png and FILE.svg")
     parser.add_argument("--step", type=int, help="draws the body and "
                         "the contact boundary in this step of a load path")
     parser.add_argument("--view", type=angles, metavar="AZIMUTH,ELEVATION",
@@ -493,9 +627,12 @@ def main():
                         "glued, which is seen if it is negative")
     options = parser.parse_args()
     try:
-        for directory in options.directories:
+        if options.together:
+            draw_together(options.directories, options.together, options.units,
+                          options.path)
+        for directory in [] if options.together else options.directories:
             draw(directory, options.units, options.field, options.path,
-                 options.view, options.step)
+                 options.view, options.step, not options.cells)
     except BadInput as error:
         print(f"picture: {error}", file=sys.stderr)
         return 2

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The body and the contact boundary, as .vtu files have them."""
 
+import re
+
 import meshio
 import numpy
 
 from .prm import BadInput
+
+ROUNDING = 1e-9  # relative to what is usual
 
 
 class Body:
@@ -21,6 +25,8 @@ class Body:
             n += len(mesh.points)
         self.cells = numpy.concatenate(cells)
         self.size = numpy.ptp(self.points, axis=0).max()
+        self.region = self.in_cells("region").astype(int) if (
+            "region" in self.meshes[0].cell_data) else numpy.zeros(len(self.cells), int)
         # Files of ranks have points of their own: those at one place are one.
         # In a single file these are of bodies that are glued to each other.
         self.vertex = numpy.arange(n) if len(files) == 1 else numpy.unique(
@@ -30,14 +36,33 @@ class Body:
         return numpy.concatenate([m.point_data[name] for m in self.meshes])
 
     def in_cells(self, name):
-        """Of each cell, the mean of the sizes of vectors at points."""
-        if name in self.meshes[0].cell_data:
-            return numpy.concatenate([mesh.cell_data[name][0].ravel()
-                                      for mesh in self.meshes])
-        if name not in self.meshes[0].point_data:
-            raise BadInput(f"there is no field {name}")
-        sizes = numpy.linalg.norm(self.at_points(name), axis=1)
-        return sizes[self.cells].mean(axis=1)
+        return numpy.concatenate([m.cell_data[name][0].ravel() for m in self.meshes])
+
+    def at_corners(self, name, averaged):
+        """At the corners of each cell: the sizes of vectors, or what the cell has;
+        averaged over those around a point of the file (bodies that are glued to each
+        other have points of their own) that are of the same material."""
+        if name in self.meshes[0].point_data:
+            return numpy.linalg.norm(self.at_points(name), axis=1)[self.cells]
+        if name not in self.meshes[0].cell_data:
+            raise BadInput(f"there is no field {name}, but displacement, " +
+                           ", ".join(self.meshes[0].cell_data))
+        values = self.in_cells(name)[:, None].repeat(self.dim + 1, axis=1)
+        if averaged and name != "region":
+            group = numpy.unique(self.cells + len(self.points) * self.region[:, None],
+                                 return_inverse=True)[1].ravel()
+            mean = numpy.bincount(group, values.ravel()) / numpy.bincount(group)
+            values = mean[group].reshape(values.shape)
+        return values
+
+    def usual_stress(self):
+        """The largest one, or that of a strain u / size in a material as stiff as the
+        energy says if this is larger: then stress is rounding."""
+        u = numpy.linalg.norm(self.at_points("displacement"), axis=1).max()
+        stress, energy = (max(
+            abs(self.in_cells(field)).max().item() for field in self.meshes[0].cell_data
+            if re.match(names, field)) for names in ("stress_|von_mises", "strain_energy"))
+        return stress * max(1., stress * u / self.size / (energy or 1e-300))
 
     def boundary(self):
         """The faces (2D: edges) that belong to one cell, and the cells."""
@@ -52,11 +77,9 @@ class Body:
     def borders(self, triangles, cells):
         """The edges of triangles at which the material region changes."""
         edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-        if "region" not in self.meshes[0].cell_data:
-            return edges[:0]
         ends = numpy.sort(self.vertex[edges], axis=1)
         _, first = numpy.unique(
-            numpy.column_stack([ends, self.in_cells("region")[cells].repeat(3)]),
+            numpy.column_stack([ends, self.region[cells].repeat(3)]),
             axis=0, return_index=True)
         _, again, count = numpy.unique(ends[first], axis=0, return_index=True,
                                        return_counts=True)
