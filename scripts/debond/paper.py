@@ -55,7 +55,8 @@ def make_pictures(program):
                         *(["--set", f"Mesh/Cells={cells}"] if cells else [])],
                        check=True, stdout=subprocess.DEVNULL)
         picture.draw(directory, units, path=[
-            f"{column} over displacement_factor" for column in PATHS.get(name, ())])
+            f"{column} over displacement_factor" for column in PATHS.get(name, ())] or
+            ["all"] * ("load_path" in pictures))
         for own, shown in pictures.items():
             shutil.copy(f"{directory}/{own}.png", f"doc/pictures/{shown}.png")
 

@@ -13,7 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 
-from . import plots, prm, vtu
+from . import plots, vtu
 from .plots import plt
 from .prm import BadInput
 from .runs import bodies, read_csv, read_summary
@@ -132,13 +132,13 @@ class Run:
     def legend(self, axes, before, **style):
         """What the colours of states mean, with their parts of the boundary."""
         parts = self.contact.parts() if self.contact else {}
-        handles = [*before, *(
-            Line2D([], [], color=STATES.get(state, OTHER_STATE), label=state + (
+        handles = [*before, *(Line2D(
+            [], [], color=STATES.get(state, OTHER_STATE), label=state + (
                 f" ({part:.1%})" if state != "held" else ""), **style)
             for state, part in parts.items())]
-        rows = -(-len(handles) * axes.get_gridspec().ncols // 5)
-        axes.legend(handles=handles, ncol=-(-len(handles) // (rows or 1)), **ABOVE)
-        return rows
+        columns = 4 // axes.get_gridspec().ncols
+        axes.legend(handles=handles, ncol=columns, **ABOVE)
+        return -(-len(handles) // columns)
 
 
 def colours_of(states):
@@ -170,13 +170,14 @@ def views(body, contact, wanted):
 
 
 def is_rounding(values, usual):
-    return not numpy.max(abs(values), initial=0.) > vtu.ROUNDING * usual
+    return numpy.nanmax(abs(values), initial=0.) <= vtu.ROUNDING * usual
 
 
 def colour(axes, values, title, signed="RdBu_r", usual=0., limits=None):
     """A scale of colours for values, which on both sides of 0 has the colours
     `signed`, with a bar that says what it leaves out; one colour for what is the same
     everywhere but for rounding."""
+    values = values[numpy.isfinite(values)]
     cut, ticks, size = numpy.zeros((2, 1), bool), None, abs(values).max()
     if limits:
         scale = ScalarMappable(colors.Normalize(*limits))
@@ -199,7 +200,8 @@ def colour(axes, values, title, signed="RdBu_r", usual=0., limits=None):
         if low > 1e-9 * top:
             low, top = (max(side, 1e-3 * max(low, top)) for side in (low, top))
             scale = ScalarMappable(colors.TwoSlopeNorm(0., -low, top), signed)
-            ticks = [-low, -low / 2, 0., top / 2, top]
+            ticks = [-low, -low / 2, 0., top / 2, top][
+                ::1 if axes[0].get_gridspec().ncols == 1 else 2]
     axes[0].figure.colorbar(
         scale, ax=axes, orientation="horizontal", shrink=0.7, aspect=45, label=title,
         ticks=ticks, format="%.3g" if ticks else None,
@@ -347,9 +349,10 @@ def draw_contact(run, wanted):
         ("length", M), ("stress", M * contact.at_nodes("bond_stiffness")), ("", 0. * M))}
     known = {"u_nu" if contact.dim == 2 else "gap": "length", "normal_traction": "stress",
              "slip": "length", "shear_traction": "stress"}
+    extra = {name: "" for name in wanted if name not in known}
     rows = [(name, {"u_nu": "normal displacement", "gap": "opening"}.get(
         name, name.replace("_", " ")) + run.units[what], usual[what])
-            for name, what in {**known, **{name: known.get(name, "") for name in wanted}}.items()
+            for name, what in {**known, **extra}.items()
             if name in contact.mesh.point_data]
     n, columns, height = len(rows), 1, 3.
     if contact.dim == 3:
@@ -413,8 +416,7 @@ def draw_line(run, all_axes, rows):
             label="bonds break" + " without slip" * ("slip" in [row[0] for row in rows]))
     run.legend(all_axes[0], before, marker="o", ls="", ms=4)
     all_axes[-1].set_xlabel(name + run.units["length"])
-    all_axes[1].set_title("positive: pressed, negative: held", fontsize=8,
-                          loc="right")
+    all_axes[1].set_title("positive: pressed, negative: held", fontsize=8, loc="right")
 
 
 def draw_surface(run, all_axes, rows):
@@ -423,7 +425,7 @@ def draw_surface(run, all_axes, rows):
     contact, length = run.contact, run.units["length"]
     size = numpy.ptp(contact.nodes, axis=0)
     wide = numpy.argsort(-size, kind="stable")[:2]
-    held = contact.state == "held"
+    held, columns = contact.state == "held", all_axes[0].get_gridspec().ncols
     triangles = contact.mesh.cells[0].data[:, [[0, 1, 2], [0, 2, 3]]]
     for axes, (name, title, usual) in zip(all_axes, rows):
         shown = ~held | (name == "gap")
@@ -445,8 +447,9 @@ def draw_surface(run, all_axes, rows):
             rasterized=len(held) > MOST_VECTORS))
         axes.set_ylabel("xyz"[wide[1]] + length)
         stretch(axes, *size[wide])
-        axes.label_outer()
-    all_axes[-1].set_xlabel("xyz"[wide[0]] + length)
+    for axes in all_axes[-columns:]:
+        axes.set_xlabel("xyz"[wide[0]] + length)
+        axes.tick_params(labelbottom=True)
     run.legend(all_axes[-1], [], lw=5)
 
 
@@ -463,6 +466,53 @@ def force_over_displacement(path):
     pairs = [(force[8:] == mean[4:], force[0] == "r", forces[force], means[mean],
               force, mean) for force in forces for mean in means if force[-1] == mean[-1]]
     return [" over ".join(max(pairs)[4:])] if pairs else []
+
+
+def draw_path(runs, wanted, labels=("",)):
+    """Of load paths, with labels if there are several: the wanted 'Y over X', four
+    pictures for 'all', or the force over the displacement with what is broken."""
+    run, path, factor = runs[0], runs[0].load_path, runs[0].factor
+    default = [] if wanted else force_over_displacement(path)
+    kinds = default or wanted
+    if kinds in ([], ["all"]):
+        largest = max((name for name in path if name.startswith("reaction_")),
+                      key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
+        kinds = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
+        if factor == "factor" and path["unit_load_work"].any():
+            kinds = ["normal_force over factor", "factor over unit_load_work"]
+        kinds = [f"broken_part over {factor}", f"J over {factor}", *kinds]
+    rows = -(-len(kinds) // 2)
+    figure, all_axes = plt.subplots(rows, min(len(kinds), 2), squeeze=False, figsize=(
+        7 if default else 10, 4.6 if default else 0.6 + 3.4 * rows))
+    for axes, kind in zip(all_axes.flat, kinds):
+        y, _, x = kind.partition(" over ")
+        for one, label in zip(runs, labels):
+            draw_curve(axes, one, x, y, label)
+        axes.set(xlabel=words_for(x, run.units), ylabel=words_for(y, run.units))
+    for axes in all_axes.flat[len(kinds):]:
+        axes.remove()
+    axes = all_axes[0, 0]
+    for name, line, invert in ((x, axes.axvline, axes.invert_xaxis),
+                               (y, axes.axhline, axes.invert_yaxis)) if default else ():
+        line(0, color="k", lw=0.6)
+        if numpy.nanmax(path[name]) < -numpy.nanmin(path[name]):
+            invert()
+    if default and x[4:] == y[8:]:  # of the support that moves
+        axes.set_xlabel(axes.get_xlabel().replace("mean ", ""))
+    if default and len(runs) == 1:
+        broken = sum(path[name] for name in path if re.fullmatch(
+            "(?!global_|contact_|bonded_|free_).*_part", name))
+        if broken.any():
+            figure.colorbar(axes.scatter(
+                path[x], path[y], c=broken, vmin=0., s=25, zorder=3, edgecolors="k",
+                linewidths=0.4), label="broken or softening part of the contact boundary")
+        end = run.summary["load_path"]["comes_off_at"]
+        if end is not None:
+            axes.annotate(f"comes off at factor {end:.4g}", (path[x][-1], path[y][-1]),
+                          (-8, 0), ha="right", textcoords="offset points")
+    if len(axes.get_legend_handles_labels()[1]) > 1:
+        axes.legend()
+    return figure
 
 
 def draw_curve(axes, run, x, y, label):
@@ -484,76 +534,21 @@ def draw_curve(axes, run, x, y, label):
     rises = numpy.diff(path[run.factor]) >= 0
     turns = [0, *(numpy.nonzero(numpy.diff(rises))[0] + 1), len(rises)]
     for begin, end in zip(turns, turns[1:]):
-        axes.plot(path[x][begin:end + 1], path[y][begin:end + 1], ".-", ms=4,
-                  label="unloading" if begin < end and not rises[begin]
-                  else "loading")
+        axes.plot(path[x][begin:end + 1], path[y][begin:end + 1], ".-", ms=4, label=(
+            "unloading" if begin < end and not rises[begin] else "loading"))
     arc = read_csv(os.path.join(run.directory, "load_path_arc.csv"))
     if arc:
         axes.plot(arc[x], arc[y], ":", color="k", lw=1, label="arc")
 
 
-def draw_path(runs, wanted, labels=("",)):
-    """Of load paths, with labels if there are several: the wanted 'Y over X', four
-    pictures for 'all', or the force over the displacement with what is broken."""
-    run, path, factor = runs[0], runs[0].load_path, runs[0].factor
-    default = [] if wanted else force_over_displacement(path)
-    kinds = default or wanted
-    if kinds in ([], ["all"]):
-        largest = max((name for name in path if name.startswith("reaction_")),
-                      key=lambda name: numpy.ptp([0., *path[name]]), default="normal_force")
-        kinds = [f"{largest} over {factor}", f"unit_displacement_work over {factor}"]
-        if factor == "factor" and path["unit_load_work"].any():
-            kinds = ["normal_force over factor", "factor over unit_load_work"]
-        kinds = [f"broken_part over {factor}", f"J over {factor}", *kinds]
-    figure, all_axes = plt.subplots(
-        -(-len(kinds) // 2), min(len(kinds), 2), squeeze=False, figsize=(
-            7 if default else 10, len(default) + 0.6 + 3.4 * -(-len(kinds) // 2)))
-    for axes, kind in zip(all_axes.flat, kinds):
-        y, _, x = kind.partition(" over ")
-        for run, label in zip(runs, labels):
-            draw_curve(axes, run, x, y, label)
-        axes.set(xlabel=words_for(x, run.units), ylabel=words_for(y, run.units))
-    for axes in all_axes.flat[len(kinds):]:
-        axes.remove()
-    if default:
-        axes = all_axes[0, 0]
-        axes.axhline(0, color="k", lw=0.6)
-        axes.axvline(0, color="k", lw=0.6)
-        for name, invert in (x, axes.invert_xaxis), (y, axes.invert_yaxis):
-            if numpy.nanmax(path[name]) < -numpy.nanmin(path[name]):
-                invert()
-        if x[4:] == y[8:]:  # of the support that moves
-            axes.set_xlabel(axes.get_xlabel().replace("mean ", ""))
-        broken = sum(path[name] for name in path if re.fullmatch(
-            "(?!global_|contact_|bonded_|free_).*_part", name))
-        if len(runs) == 1 and broken.any():
-            figure.colorbar(axes.scatter(
-                path[x], path[y], c=broken, vmin=0., s=25, zorder=3, edgecolors="k",
-                linewidths=0.4), label="broken or softening part of the contact boundary")
-        end = run.summary["load_path"]["comes_off_at"]
-        if len(runs) == 1 and end is not None:
-            axes.annotate(f"comes off at factor {end:.4g}", (path[x][-1], path[y][-1]),
-                          (-8, 0), ha="right", textcoords="offset points")
-    if len(all_axes[0, 0].get_legend_handles_labels()[1]) > 1:
-        all_axes[0, 0].legend()
-    return figure
-
-
 def draw_together(directories, file, units, wanted):
-    """The curves of several load paths in the same axes, named by what differs between
-    their scenes if that is little."""
+    """The curves of several load paths with the names of their directories."""
     runs = [Run(directory, None, units) for directory in directories]
     if not all(run.load_path for run in runs):
         raise BadInput("--together is for load paths")
-    scenes = [prm.read(os.path.join(directory, "parameters.prm"))
-              for directory in directories]
-    names = [name for name in scenes[0] if not name.startswith("Output/") and
-             len({scene.get(name) for scene in scenes}) > 1]
-    labels = [", ".join(f"{name.rpartition('/')[2]} = {scene.get(name)}" for name in names)
-              for scene in scenes]
-    if len(set(labels)) < len(runs) or max(map(len, labels)) > 60:
-        labels = directories
-    plots.save(draw_path(runs, wanted, labels), *os.path.split(file))
+    names = [os.path.basename(os.path.abspath(directory)) for directory in directories]
+    plots.save(draw_path(runs, wanted, names if len(set(names)) == len(runs) else
+                         directories), *os.path.split(file))
 
 
 def draw_history(run):
@@ -611,12 +606,11 @@ def main():
     parser.add_argument("--units", default="", help='of length and stress, as in '
                         '"mm, MPa"; those of forces and energies follow')
     parser.add_argument("--field", default="von_mises", help="of body.vtu, or of "
-                        "contact.vtu as in 'damage'")
-    parser.add_argument("--cells", action="store_true", help="stresses as each cell has "
-                        "them, not averaged at nodes")
+                        "contact.vtu, such as damage")
+    parser.add_argument("--cells", action="store_true", help="as each cell has it")
     parser.add_argument("--path", default=[], action="append", help="columns of "
-                        'load_path.csv, as in "reaction_left_y over factor"; or all: '
-                        "broken part, J, and what loads and supports do")
+                        'load_path.csv, as in "reaction_left_y over factor"; all: '
+                        "four pictures")
     parser.add_argument("--together", metavar="FILE", help="draws the curves of all "
                         "directories in one pair of axes, as FILE.png and FILE.svg")
     parser.add_argument("--step", type=int, help="draws the body and "

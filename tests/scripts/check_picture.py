@@ -103,6 +103,19 @@ assert bar == "s\n0.5% cut off, the values are 0 to 50", bar
 scale = picture.colour([axes], numpy.append(numpy.linspace(-9, 0, 999), 50.), "s")
 assert (scale.norm.vmin, scale.norm(0), scale.norm.vmax) == (-9, 0.5, 50)
 
+# What is rounding, or the same everywhere, has one colour; damage has all from 0 to 1.
+for values, usual, words in (([1e-17, 3e-17], 1., ": 0 to rounding"), ([0., 0.], 0., ": 0 to rounding"),
+                             ([2., 2. + 1e-7], 1., ": 2 everywhere")):
+    scale = picture.colour([axes], numpy.array(values), "s", usual=usual)
+    assert axes.figure.axes[-1].get_xlabel() == "s" + words and scale.cmap.N == 1
+scale = picture.colour([axes], numpy.array([0., 0.2]), "damage", limits=(0., 1.))
+assert (scale.norm.vmin, scale.norm.vmax) == (0., 1.)
+for width, aspect, words in (10., 1., "y"), (120., 10., "y\nstretched x 10"):
+    axes.set_ylabel("y")
+    picture.stretch(axes, width, 1.)
+    assert (axes.get_aspect(), axes.get_ylabel()) == (aspect, words)
+near(numpy.linalg.det(picture.split(5)).sum(), 1., 1e-12)  # areas
+
 # Words and units of columns: per thickness in 2D.
 for text, dim, force, energy in (
         ("mm, MPa", 2, ", N/mm", ", N mm/mm"), ("mm, N/mm^2", 3, ", N", ", N mm"),
@@ -244,6 +257,26 @@ assert lines.shape == (40, 2, 3) and numpy.allclose(lines[:, :, 1], 0.02)
 black = (drawn.get_facecolor() == (0, 0, 0, 1)).all(axis=1).sum()
 assert black == 40 + 2 * (40 + 4), black
 
+# Stress is averaged over the cells around a node of the same material; not across
+# the interface of bodies.
+for name, settings in ("material", two), ("cut", ["Mesh/Cuts=y = 0.02", "Boundary conditions/Contact boundary=cut_1"]):
+    figures(BENCH, *settings)
+    body = vtu.Body(["run/body.vtu"])
+    mean, own = (body.at_corners("stress_xx", averaged) for averaged in (True, False))
+    assert (own == body.in_cells("stress_xx")[:, None]).all() and (own != mean).any()
+    upper = body.points[body.cells].mean(axis=1)[:, 1] > 0.02
+    at = numpy.isclose(body.points[body.cells], (0.2, 0.02, 0.)).all(axis=2)
+    for side in upper, ~upper:
+        shown = at & side[:, None]
+        assert shown.sum() > 1 and numpy.ptp(mean[shown]) == 0, name
+        near(mean[shown][0], own[shown].mean(), 1e-6)
+    assert abs(mean[at & upper[:, None]][0] - mean[at & ~upper[:, None]][0]) > 1e-3
+assert not picture.is_rounding(body.in_cells("von_mises"), body.usual_stress())
+body.meshes[0].cell_data = {
+    field: [numpy.float64(values[0]) * (1e-40 if "energy" in field else 1e-20)]
+    for field, values in body.meshes[0].cell_data.items()}
+assert picture.is_rounding(body.in_cells("von_mises"), body.usual_stress())
+
 # In 3D: up is away from the glued side, which one of the views is of.
 for side, normal in (("bottom", (0, -1, 0)), ("top", (0, 1, 0)), ("front", (0, 0, 1))):
     settings = [f"Boundary conditions/Contact boundary={side}", "Mesh/Cells=10, 2, 2",
@@ -282,6 +315,31 @@ pixels = numpy.asarray(drawn["body"].canvas.buffer_rgba())[:, :, :3] / 255.
 blue, red = ((abs(pixels - one[:3]) < 0.01).all(axis=2).sum()
              for one in picture.colours_of(["contact", "broken"]))
 assert blue < 300 < red, (blue, red)  # the legend has about 100
+
+# The force over the displacement of the support that moves, of several runs with their
+# names; of loads the largest reaction. Damage in 2D and in 3D, on a page.
+drawn = figures("cookbook/softening-cantilever.prm", "Load path/Displacement factors=1, 3",
+                "Mesh/Cells=80, 1", units="mm, MPa", field="damage")
+(axes, bar), path = drawn["load_path"].axes, picture.read_csv("run/load_path.csv")
+assert (axes.get_xlabel(), axes.get_ylabel()) == (
+    "displacement of left, y, mm", "reaction of left, y, N/mm")
+assert axes.lines[0].get_xdata().tolist() == [1., 3.] and axes.get_xlim()[0] <= 0 and (
+    axes.lines[0].get_ydata() == path["reaction_left_y"]).all()
+assert (axes.collections[0].get_array() == path["broken_part"] + path["softening_part"]).all()
+damage = drawn["contact"].axes[2]
+assert damage.get_ylabel() == "damage" and damage.get_ylim() == (-0.03, 1.03)
+both = picture.draw_path([picture.Run("run", None, "")] * 2, [], ["a", "b"]).axes
+assert legend(both[0].figure) == ["a", "b"] and len(both) == 1
+picture.draw_together(["run", "path"], "two", "", ["J over factor"])
+assert os.path.getsize("two.png") > 10000
+assert picture.force_over_displacement(picture.read_csv("path/load_path.csv"))[0].startswith(
+    "reaction_")
+assert len(picture.draw_path([picture.Run("path", None, "")], ["all"]).axes) == 4
+assert "for load paths" in refusal("plane", "--together", "two")
+assert "there is no field none" in refusal("plane", "--field", "none")
+drawn = figures("bar-3d.prm", field="damage")
+titles = {axes.get_xlabel() for axes in drawn["contact"].axes}
+assert "damage" in titles and drawn["contact"].get_figheight() < 12, titles
 
 # A step of a load path: its states, its title, and what it needs.
 path = picture.read_csv("path/load_path.csv")
