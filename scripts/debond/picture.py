@@ -126,8 +126,7 @@ class Run:
         return found
 
     def save(self, figure, name):
-        plots.save(figure, self.directory,
-                   f"{name}-{self.step}" if self.step else name)
+        plots.save(figure, self.directory, f"{name}-{self.step}" if self.step else name)
 
     def legend(self, axes, before, **style):
         """What the colours of states mean, with their parts of the boundary."""
@@ -221,10 +220,9 @@ def stretch(axes, width, height):
 
 def split(n):
     """A triangle as n² equal ones: of the corners of these their shares in its own."""
-    corners = numpy.array([corner for i in range(n) for j in range(n - i) for corner in [
-        [(i, j), (i + 1, j), (i, j + 1)], [(i + 1, j), (i + 1, j + 1), (i, j + 1)]][
-            :2 if i + j < n - 1 else 1]]) / n
-    return numpy.concatenate([corners, 1 - corners.sum(axis=2, keepdims=True)], axis=2)
+    up, down = (numpy.array([[(i, j, m - i - j)] for i in range(m + 1) for j in range(
+        m + 1 - i)]).reshape(-1, 1, 3) for m in (n - 1, n - 2))
+    return numpy.concatenate([up + numpy.eye(3), down + 1 - numpy.eye(3)]) / n
 
 
 def draw_body(run, field, wanted, averaged):
@@ -454,8 +452,8 @@ def draw_surface(run, all_axes, rows):
 
 
 def force_over_displacement(path):
-    """The columns of the support that moves, or of the largest force and displacement in
-    the same direction; [] if nothing bears a force."""
+    """The columns of the support that moves, or of the force and the displacement in the
+    same direction with the largest product; [] if nothing bears a force."""
     def sizes(pattern):
         found = {name: numpy.nanmax(abs(path[name]), initial=0.) for name in path
                  if re.fullmatch(pattern, name)}
@@ -463,9 +461,9 @@ def force_over_displacement(path):
                 if not is_rounding(size, max(found.values()))}
 
     forces, means = sizes("reaction_.*_.|contact_reaction_."), sizes("mean_.*_.")
-    pairs = [(force[8:] == mean[4:], force[0] == "r", forces[force], means[mean],
-              force, mean) for force in forces for mean in means if force[-1] == mean[-1]]
-    return [" over ".join(max(pairs)[4:])] if pairs else []
+    pairs = [(force[8:] == mean[4:], force[0] == "r", forces[force] * means[mean], force,
+              mean) for force in forces for mean in means if force[-1] == mean[-1]]
+    return [" over ".join(max(pairs)[3:])] if pairs else []
 
 
 def draw_path(runs, wanted, labels=("",)):
@@ -492,13 +490,13 @@ def draw_path(runs, wanted, labels=("",)):
     for axes in all_axes.flat[len(kinds):]:
         axes.remove()
     axes = all_axes[0, 0]
-    for name, line, invert in ((x, axes.axvline, axes.invert_xaxis),
-                               (y, axes.axhline, axes.invert_yaxis)) if default else ():
-        line(0, color="k", lw=0.6)
-        if numpy.nanmax(path[name]) < -numpy.nanmin(path[name]):
-            invert()
-    if default and x[4:] == y[8:]:  # of the support that moves
-        axes.set_xlabel(axes.get_xlabel().replace("mean ", ""))
+    if default:  # from 0, negative values to the right and up
+        axes.axvline(0, color="k", lw=0.6)
+        axes.axhline(0, color="k", lw=0.6)
+        for name, axis in (x, axes.xaxis), (y, axes.yaxis):
+            axis.set_inverted(numpy.nanmax(path[name]) < -numpy.nanmin(path[name]))
+        if x[4:] == y[8:]:  # of the support that moves
+            axes.set_xlabel(axes.get_xlabel().replace("mean ", ""))
     if default and len(runs) == 1:
         broken = sum(path[name] for name in path if re.fullmatch(
             "(?!global_|contact_|bonded_|free_).*_part", name))
@@ -506,7 +504,7 @@ def draw_path(runs, wanted, labels=("",)):
             figure.colorbar(axes.scatter(
                 path[x], path[y], c=broken, vmin=0., s=25, zorder=3, edgecolors="k",
                 linewidths=0.4), label="broken or softening part of the contact boundary")
-        end = run.summary["load_path"]["comes_off_at"]
+        end = run.summary.get("load_path", {}).get("comes_off_at")
         if end is not None:
             axes.annotate(f"comes off at factor {end:.4g}", (path[x][-1], path[y][-1]),
                           (-8, 0), ha="right", textcoords="offset points")

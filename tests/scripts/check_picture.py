@@ -332,8 +332,8 @@ both = picture.draw_path([picture.Run("run", None, "")] * 2, [], ["a", "b"]).axe
 assert legend(both[0].figure) == ["a", "b"] and len(both) == 1
 picture.draw_together(["run", "path"], "two", "", ["J over factor"])
 assert os.path.getsize("two.png") > 10000
-assert picture.force_over_displacement(picture.read_csv("path/load_path.csv"))[0].startswith(
-    "reaction_")
+assert picture.force_over_displacement(picture.read_csv("path/load_path.csv")) == [
+    "reaction_left_y over mean_top_y"]
 assert len(picture.draw_path([picture.Run("path", None, "")], ["all"]).axes) == 4
 assert "for load paths" in refusal("plane", "--together", "two")
 assert "there is no field none" in refusal("plane", "--field", "none")
