@@ -613,28 +613,31 @@ namespace Debond
     void
     report_peak(const std::optional<LoadPathPeak<dim>> &peak, Record &record)
     {
-      if (!peak)
+      if (!peak || peak->force() == 0.)
         {
           record.add("/load_path/peak", nullptr);
           return;
         }
       const LoadPathState<dim> &state = peak->step.state;
+      std::optional<double>     known_to;
+      if (peak->bound)
+        known_to = *peak->bound / peak->force() - 1.;
       // The work of the supports for a unit of the factor is their force if
       // they prescribe a displacement of 1 at the factor 1.
       record.add("/load_path/peak",
                  {{"unit_displacement_work", state.unit_displacement_work},
                   {"factor", peak->step.factor},
                   {"displacement_factor", peak->step.displacement_factor},
-                  {"known_to", peak->known_to},
+                  {"known_to", Record::json_of(known_to)},
                   {"reactions", Json::object()}});
-      record.line("largest force",
-                  scientific(state.unit_displacement_work, 4),
-                  " as work for a unit of the displacement factor, at ",
-                  peak->step.displacement_factor,
-                  ", known to ",
-                  std::setprecision(2),
-                  100. * peak->known_to,
-                  " %");
+      record.line(
+        "largest force",
+        scientific(state.unit_displacement_work, 4),
+        " as work for a unit of the displacement factor, at ",
+        peak->step.displacement_factor,
+        known_to ?
+          words(", known to ", std::setprecision(2), 100. * *known_to, " %") :
+          ", of the states that were found");
       const std::string prefix = "reaction_";
       for (const auto &[name, force] : state.vectors)
         if (name.rfind(prefix, 0) == 0)
@@ -673,7 +676,7 @@ namespace Debond
                     result.solution.comes_off_at,
                     load_path,
                     record);
-      report_peak(result.peak, record);
+      report_peak(result.path.peak, record);
       report_arc(result.arc, load_path, record);
 
       // The mesh has to be fine enough for the worst step of the path.

@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 8, checksum " +
+      return "Debond run state 9, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -117,16 +117,6 @@ namespace Debond
 
 
 
-    template <class Archive>
-    void
-    exchange(Archive &archive, UnresolvedStep &step)
-    {
-      archive &step.first &step.bound &step.u;
-      exchange(archive, step.memory);
-    }
-
-
-
     template <class Archive, typename T>
     void
     exchange(Archive &archive, std::vector<T> &list)
@@ -152,12 +142,20 @@ namespace Debond
       PathProgress<dim> &path = state.path;
       archive &state.scene &state.mesh &state.meshes.divisions &state.meshes
         .is_last &state.meshes.shortfall &path.kinds &state.meshes.start &path
-        .u &path.stiffness;
+        .u;
       exchange(archive, state.meshes.levels);
       exchange(archive, path.steps);
       exchange(archive, path.points);
       exchange(archive, path.memory);
-      exchange(archive, path.unresolved);
+      // A peak has a step that may be none of the path's.
+      bool has_peak = path.peak.has_value();
+      archive &has_peak;
+      if (!has_peak)
+        return;
+      if (!path.peak)
+        path.peak.emplace();
+      exchange(archive, path.peak->step);
+      exchange(archive, path.peak->bound);
     }
 
 
@@ -219,8 +217,6 @@ namespace Debond
   displacements_of(RunState<dim> &state)
   {
     std::vector<DofVector *> all = {&state.meshes.start, &state.path.u};
-    for (UnresolvedStep &step : state.path.unresolved)
-      all.push_back(&step.u);
     all.erase(std::remove_if(all.begin(),
                              all.end(),
                              [](const DofVector *const u) {

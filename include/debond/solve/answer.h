@@ -9,29 +9,36 @@
 
 namespace Debond
 {
-  /// A step inside of which the force may be larger than at both of its ends,
-  /// with what it started from.
-  struct UnresolvedStep
+  /// A state that a load path has led to, and what the next step needs of it.
+  template <int dim>
+  struct PathEnd
   {
-    unsigned int first; ///< the place of the step before in the list of steps
-    double       bound; ///< of the force
-    DofVector    u;
-    BondMemory   memory;
+    LoadPathStep<dim> step;  ///< number 0 for rest
+    Eigen::VectorXd   point; ///< s of the contact nodes
+    MinimumKind       kind;
+    DofVector         u;
+    BondMemory        memory;
   };
 
 
 
-  /// The largest force of a load path that moves supports.
+  /// The largest force of a load path that moves supports, see largest_force.h.
   template <int dim>
   struct LoadPathPeak
   {
-    /// Where it is. The force is the size of
-    /// LoadPathState::unit_displacement_work.
+    /// Where it is, at a step of the path or inside of one.
     LoadPathStep<dim> step;
 
-    /// It may be larger by this part of itself, between the steps that were
-    /// done.
-    double known_to;
+    /// No force is larger on the path, between its steps either; nothing if
+    /// there is no such bound.
+    std::optional<double> bound;
+
+    /// Whatever the sign of the displacement.
+    double
+    force() const
+    {
+      return std::abs(step.state.unit_displacement_work);
+    }
   };
 
 
@@ -50,10 +57,9 @@ namespace Debond
     DofVector  u;
     BondMemory memory;
 
-    /// The largest increase of the force by the displacement factor so far, and
-    /// the steps to be looked into for its largest value.
-    double                      stiffness = 0.;
-    std::vector<UnresolvedStep> unresolved;
+    /// There is one if supports move and the loads stay, unless the scene does
+    /// not want it (Load path/Resolve).
+    std::optional<LoadPathPeak<dim>> peak;
   };
 
 
@@ -93,10 +99,6 @@ namespace Debond
     MeshProgress                   meshes; ///< without levels on a given mesh
     PathProgress<dim>              path;   ///< of a single load without steps
     std::vector<LoadPathStep<dim>> arc;
-
-    /// There is one if supports move and the loads stay, unless the scene does
-    /// not want it (Load path/Resolve) or there is no force at all.
-    std::optional<LoadPathPeak<dim>> peak;
 
     /// The bonds as the path has left them, with references to the scene; null
     /// without steps.

@@ -15,6 +15,19 @@ namespace Debond
 
 
   template <int dim>
+  void
+  interrupt(const LoadPathParameters &parameters,
+            const LoadPathStep<dim>  &step,
+            const std::string        &what,
+            Solution                 &result)
+  {
+    result.status  = SolverStatus::interrupted;
+    result.message = location(parameters, step) + "interrupted, " + what;
+  }
+
+
+
+  template <int dim>
   VerifiedState<dim>::VerifiedState(const Scene<dim>            &scene,
                                     const AdhesionIntegral<dim> &bonds,
                                     const LoadFactors            factors,
@@ -50,6 +63,24 @@ namespace Debond
     step.displacement_factor = factors.displacements;
     step.state               = state.state;
     return step;
+  }
+
+
+
+  template <int dim>
+  void
+  refine_state(const Scene<dim>            &scene,
+               const AdhesionIntegral<dim> &bonds,
+               const LoadFactors            factors,
+               CorrectionSolver            &correction,
+               DofVector                   &u,
+               Solution                    &result)
+  {
+    const Refined refined = refine_where_needed(
+      scene, bonds, factors, correction, Interruption::by_signal(), u);
+    result.is_refined = refined.is_refined;
+    if (!refined.note.empty() && result.notes.empty())
+      result.notes.push_back(refined.note);
   }
 
 
@@ -110,6 +141,8 @@ namespace Debond
 
 
   DEBOND_INSTANTIATE(location);
+  DEBOND_INSTANTIATE(interrupt);
+  DEBOND_INSTANTIATE(refine_state);
   DEBOND_INSTANTIATE(step_of);
   DEBOND_INSTANTIATE_CLASS(VerifiedState);
   DEBOND_INSTANTIATE(load_path_totals);

@@ -2,6 +2,8 @@
 #ifndef debond_solve_path_load_path_steps_h
 #define debond_solve_path_load_path_steps_h
 
+#include <debond/solve/minimum/refinement.h>
+#include <debond/solve/minimum/solution.h>
 #include <debond/solve/path/load_path_state.h>
 #include <debond/solve/scene/scene.h>
 
@@ -46,6 +48,15 @@ namespace Debond
   std::string
   location(const LoadPathParameters &parameters, const LoadPathStep<dim> &step);
 
+  /// Makes @p result that of a run that a signal has ended at this step, with
+  /// @p what is missing.
+  template <int dim>
+  void
+  interrupt(const LoadPathParameters &parameters,
+            const LoadPathStep<dim>  &step,
+            const std::string        &what,
+            Solution                 &result);
+
   /// A state of the load path in numbers, with the vectors that the scene asks
   /// for, and its verification. To be made by all ranks.
   template <int dim>
@@ -67,6 +78,17 @@ namespace Debond
   step_of(const VerifiedState<dim> &state,
           const unsigned int        k,
           const LoadFactors         factors);
+
+
+  /// Refines a state of a path if needed, with one note for all of them.
+  template <int dim>
+  void
+  refine_state(const Scene<dim>            &scene,
+               const AdhesionIntegral<dim> &bonds,
+               const LoadFactors            factors,
+               CorrectionSolver            &correction,
+               DofVector                   &u,
+               Solution                    &result);
 
 
 
