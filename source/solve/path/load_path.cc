@@ -94,7 +94,8 @@ namespace Debond
               break;
             table.row(steps.back());
           }
-        result.parts["largest force"] += seconds_of_force;
+        if (seconds_of_force > 0.)
+          result.parts["largest force"] += seconds_of_force;
         result.parts["followed path"] += timer.wall_time() - seconds_of_force;
         // What bonds take may depend on the mode in which they break. If it
         // changes within steps, by more than a part of the energy taken on the
