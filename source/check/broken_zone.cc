@@ -106,7 +106,6 @@ namespace Debond
   template <int dim>
   double
   broken_zone(const ContactBoundary<dim>  &boundary,
-              const AdhesiveLaw           &law,
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s)
   {
@@ -115,7 +114,6 @@ namespace Debond
     // broken for good. The edge of the zone is the zero of the opening minus
     // this threshold, so that the length of a crack changes continuously as the
     // crack grows inside a face.
-    const double broken_beyond = law.broken_beyond();
     // Bonds that do not return remember their largest opening at the quadrature
     // points only. Unless these are the nodes, nothing is known between them,
     // and the points are summed up.
@@ -128,10 +126,11 @@ namespace Debond
       {
         const auto threshold = [&](const std::array<double, dim> &coordinates) {
           const BondScale bonds = adhesion.points().bonds_at(face, coordinates);
+          const double    beyond = bonds.law->broken_beyond();
           return bonds.energy == 0. ||
-                     adhesion.reached_at(face, coordinates) < -broken_beyond ?
+                     adhesion.reached_at(face, coordinates) < -beyond ?
                    0. :
-                   broken_beyond * bonds.length;
+                   beyond * bonds.length;
         };
         const auto density = [&](const std::array<double, dim> &place) {
           return boundary.density(face, place);
@@ -193,7 +192,6 @@ namespace Debond
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,
-         const AdhesiveLaw           &law,
          const AdhesionIntegral<dim> &adhesion,
          const VectorView            &s)
   {
@@ -202,8 +200,7 @@ namespace Debond
     // taken for linear. If the scene's bonds begin inside a face the front is
     // in its middle, and if they begin at a vertex it is there.
     std::vector<dealii::Point<dim>> result;
-    const double                    broken_beyond = law.broken_beyond();
-    if (dim != 2 || broken_beyond == 0.)
+    if (dim != 2 || adhesion.adhesive_law().broken_beyond() == 0.)
       return result;
     // By the coordinates of a vertex, what bonds next to it do on the first of
     // its faces: 0 if there are none, 1 if they are broken, 2 if they hold.
@@ -227,7 +224,7 @@ namespace Debond
             // What has broken for good stays broken if it closes.
             beyond[k] = std::max(adhesion.points().opening(face, place, s),
                                  -adhesion.reached_at(face, k) * bonds.length) -
-                        broken_beyond * bonds.length;
+                        bonds.law->broken_beyond() * bonds.length;
             grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
             const dealii::Point<dim> &vertex = face.vertices[k];
             const auto [other, is_first] =

@@ -51,9 +51,8 @@ namespace Debond
     // Along the boundary bonds soften over about E' G / strength^2, and a front
     // is resolved if some faces fit into this length. Bonds that never soften,
     // or that take energy without end, have no such length.
-    const AdhesiveLaw &law    = adhesion.adhesive_law();
-    const double       energy = law.pieces().largest_value();
-    if (!law.softens() || !std::isfinite(energy))
+    const AdhesiveLaw &law = adhesion.adhesive_law();
+    if (!law.softens() || !std::isfinite(law.pieces().largest_value()))
       return infinity;
 
     // All ranks know all faces of the contact boundary, but only the materials
@@ -74,7 +73,7 @@ namespace Debond
           // here. The size of a face divides the length of the zone.
           double &faces = faces_by_modulus[face.cell];
           faces         = std::min(faces,
-                           energy * bonds.energy /
+                           bonds.law->pieces().largest_value() * bonds.energy /
                              (strength * strength * face.size()));
         }
     double least = infinity;

@@ -93,9 +93,9 @@ namespace Debond
       // if a gap under pressure is as small as the violation of the node; else
       // it is a kink if the opening is at an end of a piece, and otherwise the
       // branch.
-      const AdhesiveLaw     &law         = adhesion.adhesive_law();
-      const PiecewiseEnergy &branches    = law.pieces();
       const BondScale        bonds       = adhesion.points().bonds_at(i);
+      const AdhesiveLaw     &law         = *bonds.law;
+      const PiecewiseEnergy &branches    = law.pieces();
       const unsigned int     least_piece = adhesion.least_piece(i);
       ContactNodeState      &node        = result.nodes[i];
       const auto             state_of    = [&](const unsigned int piece) {
@@ -309,9 +309,9 @@ namespace Debond
                const double                  normal_force,
                const Interval               &bond_forces)
     {
-      const AdhesiveLaw &law           = adhesion.adhesive_law();
       const auto        &boundary_node = adhesion.contact_boundary().nodes[i];
       const BondScale    bonds         = adhesion.points().bonds_at(i);
+      const AdhesiveLaw &law           = *bonds.law;
       ContactNodeState   node;
       node.s       = s;
       node.opening = -s;
@@ -496,8 +496,7 @@ namespace Debond
     // rounding alone are closed, since a crack that is closed has no length.
     const Eigen::VectorXd rounded = closed_by_rounding(
       contact, problem.diagonal(), found, tolerance * least_force, s, scales);
-    result.broken_zone =
-      broken_zone(boundary, adhesion.adhesive_law(), adhesion, rounded);
+    result.broken_zone = broken_zone(boundary, adhesion, rounded);
 
     const std::vector<Jump<dim>> tractions = node_tractions(adhesion, s);
     const unsigned int           n_nodes   = adhesion.n_nodes();

@@ -12,7 +12,10 @@ namespace Debond
     const AdhesiveLaw            &adhesive_law,
     const ContactQuadrature<dim> &quadrature_rule,
     const BondField<dim>         *bond_field)
-    : contact_points(contact_boundary, quadrature_rule, bond_field)
+    : contact_points(contact_boundary,
+                     adhesive_law,
+                     quadrature_rule,
+                     bond_field)
     , law(adhesive_law)
   {
     update();
@@ -40,8 +43,7 @@ namespace Debond
     /// jump for each unit of it: infinite if it does not come there.
     template <int dim>
     double
-    way_to_end(const AdhesiveLaw       &law,
-               const ContactPoint<dim> &point,
+    way_to_end(const ContactPoint<dim> &point,
                const Jump<dim>         &jump,
                const double             scaled,
                const double             reached,
@@ -51,7 +53,7 @@ namespace Debond
       if (point.bonds.energy == 0.)
         return infinity;
       const PiecewiseEnergy::Piece piece =
-        law.pieces().piece_at(scaled, reached);
+        point.bonds.law->pieces().piece_at(scaled, reached);
       if (!point.shears())
         return piece.way_to_end(scaled, way.normal / point.bonds.length);
       // After the part x of the way the square of the opening is A x^2 + 2 B x
@@ -82,6 +84,21 @@ namespace Debond
         }
       return first;
     }
+
+
+
+    /// The energy that @p bonds of a point take for good from one memory to the
+    /// next.
+    template <int dim>
+    double
+    taken_between(const ContactPoint<dim> &point,
+                  const BondScale         &bonds,
+                  const double             reached,
+                  const double             now)
+    {
+      return point.weight * bonds.energy *
+             (bonds.law->value(0., now) - bonds.law->value(0., reached));
+    }
   } // namespace
 
 
@@ -97,7 +114,7 @@ namespace Debond
         // Bonds that have never been stretched: all of their energy, in
         // opening.
         memory.reached.assign(n, 0.);
-        memory.toughness.assign(n, 1.);
+        memory.mode.assign(n, 0.);
         memory.mixity.assign(n, 0.);
         memory.taken.assign(n, 0.);
       }
@@ -113,7 +130,7 @@ namespace Debond
     // The memory of a point is the least displacement that it has ever had, so
     // it only falls, and a second call with the same s changes nothing. Where
     // there is no memory yet, reached is 0, which none at s <= 0 exceeds.
-    const bool has_mode = contact_points.toughness_by_mode() != nullptr;
+    const bool has_mode = contact_points.depends_on_mode();
     BondMemory memory   = has_mode ? memory_with_modes() : broken;
     memory.reached.clear();
     for_each_point(s, [&](const auto &point, double scaled, double reached) {
@@ -124,8 +141,7 @@ namespace Debond
         return;
       // What the bonds take in this step they take with the energy that they
       // have in it.
-      memory.taken[q] += point.weight * point.bonds.energy *
-                         (law.value(0., now) - law.value(0., reached));
+      memory.taken[q] += taken_between(point, point.bonds, reached, now);
       // The mode of the next step, unless that shows another one. Bonds that
       // bear nothing yet have none: it would be that of rounding.
       if (bears(scaled))
@@ -148,8 +164,7 @@ namespace Debond
     // rounding; they get the m with which the straight way of their jump in
     // this step first comes to the end of the first piece, and the step is done
     // again if that matters.
-    const auto *const toughness = contact_points.toughness_by_mode();
-    if (toughness == nullptr)
+    if (!contact_points.depends_on_mode())
       return 0.;
     BondMemory  memory     = memory_with_modes();
     const auto *last_point = last.points().list().data();
@@ -166,8 +181,7 @@ namespace Debond
       const double    part =
         has_mode ? 1. :
                       std::min(1.,
-                            way_to_end(law,
-                                       point,
+                            way_to_end(point,
                                        start,
                                        point.scaled_displacement(start),
                                        reached,
@@ -176,19 +190,18 @@ namespace Debond
         start.moved(way, part).part_of_shear(point.bonds.shear);
       if (point.bonds.energy == 0. || std::isnan(mixity))
         return;
-      // What they take with the energy that they have, and with another one: it
-      // is reached at another opening. With `factor` times the energy at the
-      // same stiffness the law is stretched by its square root, so that the
-      // same jump is another multiple of its length.
-      const double before = memory.toughness[q];
-      const double after  = (*toughness)(mixity, point.bonds.energy / before);
-      const auto   taken_with = [&](const double factor) {
-        const double now =
-          std::min(reached, scaled * std::sqrt(before / factor));
-        return point.weight * point.bonds.energy * factor / before *
-               (law.value(0., now) - law.value(0., reached));
-      };
-      const double taken = taken_with(before), other = taken_with(after);
+      // What they take with the mode that they have, and with the other one,
+      // with which the same jump is another multiple of their length.
+      const BondScale after = contact_points.at_mode(q, mixity);
+      const double    there = scaled * point.bonds.length / after.length;
+      const double    reached_there =
+        after.law->reached_as(*point.bonds.law, reached);
+      const double taken =
+        taken_between(point, point.bonds, reached, std::min(reached, scaled));
+      const double other = taken_between(point,
+                                         after,
+                                         reached_there,
+                                         std::min(reached_there, there));
       // What bonds take on the way, and by how much that depends on the mode
       // that they are given.
       all += std::max(taken, other);
@@ -209,22 +222,20 @@ namespace Debond
   void
   AdhesionIntegral<dim>::freeze_mode()
   {
-    // From here to the next call the law of each point is that of G(m) with the
-    // m it remembers, at the same stiffness: a potential, which the methods
-    // need.
-    const auto *const toughness = contact_points.toughness_by_mode();
-    if (toughness == nullptr || broken.mixity.empty())
+    // From here to the next call the law of each point is that of the mode it
+    // remembers, at the same stiffness: a potential, which the methods need.
+    // Damage stays what it is.
+    if (!contact_points.depends_on_mode() || broken.mixity.empty())
       return;
     BondMemory memory = broken;
     for (std::size_t q = 0; q < memory.mixity.size(); ++q)
-      {
-        // Toughness multiplies the energy of opening, which is what the points
-        // have without the toughness of an earlier mode.
-        const double energy =
-          contact_points.list()[q].bonds.energy / memory.toughness[q];
-        if (energy > 0.)
-          memory.toughness[q] = (*toughness)(memory.mixity[q], energy);
-      }
+      if (const BondScale &now = contact_points.list()[q].bonds;
+          now.energy > 0. && memory.mode[q] != memory.mixity[q])
+        {
+          memory.mode[q]    = memory.mixity[q];
+          memory.reached[q] = contact_points.at_mode(q, memory.mode[q])
+                                .law->reached_as(*now.law, memory.reached[q]);
+        }
     set_memory(memory);
   }
 
@@ -237,7 +248,7 @@ namespace Debond
     // The sums at s = 0 contain what bonds have dissipated, so they follow the
     // memory.
     broken = memory;
-    contact_points.set_toughness(broken.toughness);
+    contact_points.set_modes(broken.mode);
     update();
   }
 
@@ -304,11 +315,11 @@ namespace Debond
   AdhesionIntegral<dim>::value(const VectorView &s) const
   {
     // This is the quadrature of the last term of J. Bonds that vary have the
-    // energy times j_1(s / length), so that one law serves all points and only
-    // two numbers a point are stored.
+    // energy times j_1(s / length).
     double sum = 0.;
     for_each_point(s, [&](const auto &point, double scaled, double reached) {
-      sum += point.weight * point.bonds.energy * law.value(scaled, reached);
+      sum += point.weight * point.bonds.energy *
+             point.bonds.law->value(scaled, reached);
     });
     // What they have taken was with other energies than they have now.
     if (!broken.taken.empty())
@@ -341,7 +352,7 @@ namespace Debond
     for_each_point(Eigen::VectorXd::Zero(n_unknowns()),
                    [&](const auto &point, double, double reached) {
                      sum += point.weight * point.bonds.energy *
-                            law.value(0., reached);
+                            point.bonds.law->value(0., reached);
                    });
     return sum;
   }
@@ -364,7 +375,7 @@ namespace Debond
           // along an unknown is tau/l times the product of the jump with what
           // the unknown makes of it.
           const double stiffness = point.force_factor() / point.bonds.length *
-                                   law.secant(scaled, reached);
+                                   point.bonds.law->secant(scaled, reached);
           const Jump<dim> jump = point.jump(s);
           point.for_each_unknown([&](const unsigned int i, const auto &by) {
             xi(i) += stiffness * by.product(jump, point.bonds.shear);
@@ -372,7 +383,7 @@ namespace Debond
           return;
         }
       const double force =
-        point.force_factor() * law.derivative(scaled, reached);
+        point.force_factor() * point.bonds.law->derivative(scaled, reached);
       for (unsigned int k = 0; k < point.n_nodes; ++k)
         xi(point.index[k]) += point.shape[k] * force;
     });
@@ -430,13 +441,15 @@ namespace Debond
     // and a quadratic of one curvature k lies above j_1(-l) if k is at least
     // both: of all jumps of one length the least value is at that along the
     // jump, where it is the one of the law itself.
-    const auto of_law = [this](const double scaled, const double reached) {
-      return law.curvature(scaled, reached);
-    };
-    const auto of_all = [this](const double scaled, const double reached) {
-      return std::max(law.curvature(scaled, reached),
-                      law.secant(scaled, reached));
-    };
+    const auto of_law =
+      [](const AdhesiveLaw &law, const double scaled, const double reached) {
+        return law.curvature(scaled, reached);
+      };
+    const auto of_all =
+      [](const AdhesiveLaw &law, const double scaled, const double reached) {
+        return std::max(law.curvature(scaled, reached),
+                        law.secant(scaled, reached));
+      };
     return shears() ? matrix(s, of_all, of_all) : matrix(s, of_law, of_law);
   }
 
@@ -452,10 +465,10 @@ namespace Debond
     // derivative, across it tau/l.
     return matrix(
       s,
-      [this](const double scaled, const double reached) {
+      [](const AdhesiveLaw &law, const double scaled, const double reached) {
         return law.second_derivative(scaled, reached);
       },
-      [this](const double scaled, const double reached) {
+      [](const AdhesiveLaw &law, const double scaled, const double reached) {
         return law.secant(scaled, reached);
       });
   }
@@ -477,8 +490,7 @@ namespace Debond
       const Jump<dim> way = {point.normal_displacement(ds) - point.offset,
                              point.jump(ds).tangential - point.slip_offset};
       first =
-        std::min(first,
-                 way_to_end(law, point, point.jump(s), scaled, reached, way));
+        std::min(first, way_to_end(point, point.jump(s), scaled, reached, way));
     });
     return first;
   }
@@ -503,8 +515,7 @@ namespace Debond
                              to.jump(next_s).tangential -
                                point.jump(s).tangential};
       first =
-        std::min(first,
-                 way_to_end(law, point, point.jump(s), scaled, reached, way));
+        std::min(first, way_to_end(point, point.jump(s), scaled, reached, way));
     });
     return first;
   }
@@ -517,8 +528,7 @@ namespace Debond
     /// more than delta[i] from the given one, each along its own unknown i.
     template <int dim>
     void
-    add_allowed(const AdhesiveLaw         &law,
-                const ContactPoint<dim>   &point,
+    add_allowed(const ContactPoint<dim>   &point,
                 const Jump<dim>           &jump,
                 const double               scaled,
                 const double               reached,
@@ -537,7 +547,7 @@ namespace Debond
         const double   size   = std::sqrt(by.product(by, shear));
         const double   radius = delta[i] * size / point.bonds.length;
         const Interval traction =
-          law.goldstein_interval(scaled, radius, reached);
+          point.bonds.law->goldstein_interval(scaled, radius, reached);
         const double cosine =
           scaled == 0. || size == 0. ?
             0. :
@@ -574,8 +584,7 @@ namespace Debond
     for_each_point(s, [&](const auto &point, double scaled, double reached) {
       if (point.shears())
         {
-          add_allowed(
-            law, point, point.jump(s), scaled, reached, delta, forces);
+          add_allowed(point, point.jump(s), scaled, reached, delta, forces);
           return;
         }
       for (unsigned int k = 0; k < point.n_nodes; ++k)
@@ -583,10 +592,8 @@ namespace Debond
           const unsigned int node = point.index[k];
           // Each node's radius is that of its own force: how far s may be wrong
           // differs from node to node.
-          const Interval traction =
-            law.goldstein_interval(scaled,
-                                   delta[node] / point.bonds.length,
-                                   reached);
+          const Interval traction = point.bonds.law->goldstein_interval(
+            scaled, delta[node] / point.bonds.length, reached);
           forces[node].lower +=
             point.force_factor() * point.shape[k] * traction.lower;
           forces[node].upper +=

@@ -10,13 +10,13 @@ namespace Debond
   {
     // A point is open if it is lifted off and nothing can pull on it: its bonds
     // are broken, be it now or by their memory, or there are none.
-    const double beyond = phi.adhesive_law().broken_beyond();
-    double       sum    = 0.;
+    double sum = 0.;
     phi.for_each_point(s,
                        [&](const auto &point, double scaled, double reached) {
                          if (scaled < 0. && point.n_entries > 0 &&
                              (point.bonds.energy == 0. ||
-                              std::min(reached, scaled) < -beyond))
+                              std::min(reached, scaled) <
+                                -point.bonds.law->broken_beyond()))
                            sum += point.weight;
                        });
     return sum;
@@ -38,10 +38,9 @@ namespace Debond
               // With bonds that shear the force is tau/l times the jump, along
               // the normal and, times the ratio of the stiffnesses, along the
               // boundary.
-              const AdhesiveLaw &law       = phi.adhesive_law();
-              const double       stiffness = point.force_factor() /
+              const double stiffness = point.force_factor() /
                                        point.bonds.length *
-                                       law.secant(scaled, reached);
+                                       point.bonds.law->secant(scaled, reached);
               const Jump<dim> jump = point.jump(s);
               for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
                 forces[point.index[k]] +=
@@ -56,7 +55,7 @@ namespace Debond
           for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
             forces[point.index[k]] +=
               point.shape[k] * point.force_factor() *
-              phi.adhesive_law().derivative(scaled, reached);
+              point.bonds.law->derivative(scaled, reached);
         });
     return forces;
   }
@@ -78,11 +77,11 @@ namespace Debond
     const double            scaled  = point.scaled_displacement(s);
     if (!point.shears())
       return {bonds.energy / bonds.length *
-                phi.adhesive_law().derivative(scaled, reached),
+                bonds.law->derivative(scaled, reached),
               {}};
     // Per area: the same as in Phi without the weight of a point.
     const double stiffness = bonds.energy / (bonds.length * bonds.length) *
-                             phi.adhesive_law().secant(scaled, reached);
+                             bonds.law->secant(scaled, reached);
     Jump<dim> result = point.jump(s);
     result.normal *= stiffness;
     result.tangential *= stiffness * bonds.shear;
@@ -126,7 +125,7 @@ namespace Debond
                          if (point.n_entries > 0)
                            return;
                          const double damage =
-                           phi.adhesive_law().damage(std::min(reached, scaled));
+                           point.bonds.law->damage(std::min(reached, scaled));
                          for (const auto &part : point.slip)
                            {
                              const double share =
@@ -152,10 +151,10 @@ namespace Debond
     // close to it rounding decides which piece holds: nothing can be claimed of
     // such a state. A kink that bonds have passed for good by their memory is
     // left out.
-    const PiecewiseEnergy &pieces = phi.adhesive_law().pieces();
-    bool                   is_at  = false;
+    bool is_at = false;
     phi.for_each_point(s,
                        [&](const auto &point, double scaled, double reached) {
+                         const auto &pieces = point.bonds.law->pieces();
                          for (unsigned int k = 0; k + 1 < pieces.size(); ++k)
                            is_at =
                              is_at ||
@@ -178,14 +177,13 @@ namespace Debond
     // Rounding in s may put a bond on the wrong side of a kink. With the
     // smaller of the second derivatives on both sides, a positive definite S +
     // Phi'' means a local minimum on whichever side the bond is.
-    const AdhesiveLaw &law = phi.adhesive_law();
     return phi.matrix(
       s,
-      [&](const double scaled, const double reached) {
+      [&](const AdhesiveLaw &law, const double scaled, const double reached) {
         return std::min(law.second_derivative((1. + part) * scaled, reached),
                         law.second_derivative((1. - part) * scaled, reached));
       },
-      [&](const double scaled, const double reached) {
+      [&](const AdhesiveLaw &law, const double scaled, const double reached) {
         return law.secant((1. + part) * scaled, reached);
       });
   }
@@ -199,8 +197,10 @@ namespace Debond
     // Row sums of the matrix for a law with j_1'' = 1 move all of the stiffness
     // to the diagonal. This is exact for nodal quadrature, and for an s that is
     // the same at all nodes.
-    const unsigned int n   = phi.n_unknowns();
-    const auto         one = [](const double, const double) { return 1.; };
+    const unsigned int n = phi.n_unknowns();
+    const auto one       = [](const AdhesiveLaw &, const double, const double) {
+      return 1.;
+    };
     return phi.matrix(Eigen::VectorXd::Zero(n), one, one) *
            Eigen::VectorXd::Ones(n);
   }

@@ -9,9 +9,11 @@ namespace Debond
   template <int dim>
   ContactPoints<dim>::ContactPoints(
     const ContactBoundary<dim>   &contact_boundary,
+    const AdhesiveLaw            &law,
     const ContactQuadrature<dim> &quadrature_rule,
     const BondField<dim>         *bond_field)
     : contact(contact_boundary)
+    , law(law)
     , quadrature(quadrature_rule)
     , field(bond_field)
   {
@@ -39,19 +41,34 @@ namespace Debond
 
   template <int dim>
   void
-  ContactPoints<dim>::set_toughness(const std::vector<double> &by_point)
+  ContactPoints<dim>::set_modes(const std::vector<double> &by_point)
   {
-    if (toughness == by_point)
+    if (modes == by_point)
       return;
-    toughness = by_point;
+    modes = by_point;
     collect_points();
-    // Between points a node has the toughness of the next one.
-    toughness_of_nodes.assign(contact.nodes.size(), 1.);
+    // Between points a node has the mode of the next one.
+    modes_of_nodes.assign(contact.nodes.size(), 0.);
     for (const Face &face : contact.faces)
       for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
         if (!face.is_held(k))
-          toughness_of_nodes[face.node(k)] =
-            toughness[nearest(face, coefficient_place<dim>(k))];
+          modes_of_nodes[face.node(k)] =
+            modes[nearest(face, coefficient_place<dim>(k))];
+  }
+
+
+
+  template <int dim>
+  BondScale
+  ContactPoints<dim>::with_law(BondScale bonds) const
+  {
+    // Few bonds have a tail of their own, and the law of all others is not
+    // owned by them.
+    bonds.law =
+      bonds.tail == 1. ?
+        std::shared_ptr<const AdhesiveLaw>(std::shared_ptr<void>(), &law) :
+        std::make_shared<const AdhesiveLaw>(law.with_tail(bonds.tail));
+    return bonds;
   }
 
 
@@ -72,6 +89,7 @@ namespace Debond
       double    stiffness = 0.; ///< times measure, as is the energy
       double    energy    = 0.;
       double    shear = 0., shear_energy = 0.; ///< likewise, of stiffness too
+      double tail = 0., energy_ratio = 0., strength_ratio = 0.; ///< of energy
 
       void
       add(const BondScale &bonds, const double more)
@@ -80,13 +98,19 @@ namespace Debond
           first = bonds;
         is_mixed = is_mixed || bonds.energy != first.energy ||
                    bonds.length != first.length || bonds.shear != first.shear ||
-                   bonds.shear_energy != first.shear_energy;
+                   bonds.shear_energy != first.shear_energy ||
+                   bonds.tail != first.tail ||
+                   bonds.energy_ratio != first.energy_ratio ||
+                   bonds.strength_ratio != first.strength_ratio;
         measure += more;
         const double own = bonds.energy / (bonds.length * bonds.length);
         stiffness += more * own;
         energy += more * bonds.energy;
         shear += more * own * bonds.shear;
         shear_energy += more * bonds.shear_energy;
+        tail += more * bonds.energy * bonds.tail;
+        energy_ratio += more * bonds.energy * bonds.energy_ratio;
+        strength_ratio += more * bonds.energy * bonds.strength_ratio;
       }
 
       BondScale
@@ -100,7 +124,10 @@ namespace Debond
         return {energy / measure,
                 std::sqrt(energy / stiffness),
                 shear / stiffness,
-                shear_energy / measure};
+                shear_energy / measure,
+                tail / energy,
+                energy_ratio / energy,
+                strength_ratio / energy};
       }
     };
     // Where boundaries with different bonds meet, a vertex has the bonds of
@@ -129,9 +156,9 @@ namespace Debond
           field->at(face.vertices[k], face.id);
 
     for (const Sum &sum : nodes)
-      bonds_of_nodes.push_back(sum.mean());
+      bonds_of_nodes.push_back(with_law(sum.mean()));
     for (const Sum &sum : held)
-      bonds_of_held.push_back(sum.mean());
+      bonds_of_held.push_back(with_law(sum.mean()));
   }
 
 
@@ -155,7 +182,7 @@ namespace Debond
           ContactPoint<dim> point;
           point.weight = in_rule.weight * face.measure *
                          contact.density(face, in_rule.centroid);
-          point.bonds    = bonds_at_first(face, in_rule.barycentric);
+          point.bonds    = in_opening_at(face, in_rule.barycentric);
           const auto add = [&](const unsigned int index, const unsigned int k) {
             point.index[point.n_entries] = index;
             point.shape[point.n_entries] = shape[k];
@@ -183,8 +210,8 @@ namespace Debond
               // the weights of all faces so far. Displacements along the
               // boundary are those of the last face that has bonds in shear.
               point.weight += at_node.weight;
-              point.bonds =
-                field == nullptr ? BondScale() : bonds_of_nodes[point.index[0]];
+              point.bonds = field == nullptr ? with_law({}) :
+                                               bonds_of_nodes[point.index[0]];
               if (!point.shears())
                 {
                   point.slip        = at_node.slip;
@@ -204,8 +231,13 @@ namespace Debond
           points.push_back(point);
         }
     separate_shear();
-    for (std::size_t q = 0; q < toughness.size(); ++q)
-      points[q].bonds.toughen(toughness[q]);
+    if (modes.empty() && !depends_on_mode())
+      return;
+    in_opening.clear();
+    for (const ContactPoint<dim> &point : points)
+      in_opening.push_back(point.bonds);
+    for (std::size_t q = 0; q < modes.size(); ++q)
+      points[q].bonds = at_mode(q, modes[q]);
   }
 
 
@@ -336,8 +368,8 @@ namespace Debond
 
   template <int dim>
   BondScale
-  ContactPoints<dim>::bonds_at_first(const Face        &face,
-                                     const Barycentric &place) const
+  ContactPoints<dim>::in_opening_at(const Face        &face,
+                                    const Barycentric &place) const
   {
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
@@ -351,10 +383,8 @@ namespace Debond
   BondScale
   ContactPoints<dim>::bonds_at(const Face &face, const Barycentric &place) const
   {
-    BondScale bonds = bonds_at_first(face, place);
-    if (!toughness.empty())
-      bonds.toughen(toughness[nearest(face, place)]);
-    return bonds;
+    const BondScale bonds = in_opening_at(face, place);
+    return modes.empty() ? bonds : at_mode(bonds, modes[nearest(face, place)]);
   }
 
 

@@ -12,6 +12,34 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// AdhesiveLaw::broken_beyond(), of a law without it.
+    double
+    opening_of_broken(const AdhesiveLaw &law)
+    {
+      const PiecewiseEnergy::Piece &last =
+        law.pieces()[law.pieces().size() - 1];
+      double end = law.bond_threshold();
+      if (last.decay == 0.)
+        return last.is_flat() ? end : infinity;
+      // Damage grows with the opening there, and is 1 but for rounding after 40
+      // lengths of decay.
+      constexpr double broken = 0.99;
+      double           beyond = end + 40. / last.decay;
+      for (unsigned int step = 0; step < 60; ++step)
+        {
+          // At `end` bonds are damaged by less, at `beyond` by more: 60
+          // halvings leave nothing but rounding.
+          const double middle                           = 0.5 * (end + beyond);
+          (law.damage(-middle) < broken ? end : beyond) = middle;
+        }
+      return beyond;
+    }
+  } // namespace
+
+
+
   AdhesiveLaw::AdhesiveLaw(const std::vector<EnergyPiece> &pieces)
     : energy_pieces(pieces)
   {
@@ -32,6 +60,7 @@ namespace Debond
                                       "\" pushes");
         names.push_back(pieces[k].name);
       }
+    largest_opening = opening_of_broken(*this);
   }
 
 
@@ -173,6 +202,54 @@ namespace Debond
 
 
 
+  AdhesiveLaw
+  AdhesiveLaw::with_tail(const double factor) const
+  {
+    // The traction at s is that of this law at first + (s - first) / factor,
+    // first being the end of the first piece.
+    std::vector<EnergyPiece> result;
+    const double             first = energy_pieces[0].lower;
+    for (unsigned int k = 0; k < energy_pieces.size(); ++k)
+      {
+        const PiecewiseEnergy::Piece &piece = energy_pieces[k];
+        const double                  slope =
+          piece.curvature * first * (1. - 1. / factor) + piece.slope;
+        result.push_back(
+          k == 0 ?
+            EnergyPiece{piece.curvature, piece.slope, piece.lower, names[k]} :
+            EnergyPiece{piece.curvature / factor,
+                        slope,
+                        first + (piece.lower - first) * factor,
+                        names[k],
+                        piece.decay / factor});
+      }
+    return AdhesiveLaw(result);
+  }
+
+
+
+  double
+  AdhesiveLaw::reached_as(const AdhesiveLaw &other, const double reached) const
+  {
+    // Damage grows with the opening beyond the first piece, where both laws
+    // begin to differ: it is bisected for.
+    const double first = energy_pieces[0].lower;
+    const double lost  = other.damage(reached);
+    if (this == &other || !(reached < first) || lost == 0.)
+      return reached;
+    double inside = first, beyond = 2. * first;
+    while (damage(beyond) < lost && std::isfinite(beyond))
+      beyond *= 2.;
+    for (unsigned int step = 0; step < 100; ++step)
+      {
+        const double middle                       = 0.5 * (inside + beyond);
+        (damage(middle) < lost ? inside : beyond) = middle;
+      }
+    return beyond;
+  }
+
+
+
   bool
   AdhesiveLaw::never_stiffens() const
   {
@@ -217,30 +294,6 @@ namespace Debond
   AdhesiveLaw::bond_threshold() const
   {
     return std::abs(energy_pieces[energy_pieces.size() - 1].upper);
-  }
-
-
-
-  double
-  AdhesiveLaw::broken_beyond() const
-  {
-    const PiecewiseEnergy::Piece &last =
-      energy_pieces[energy_pieces.size() - 1];
-    double end = bond_threshold();
-    if (last.decay == 0.)
-      return last.is_flat() ? end : infinity;
-    // Damage grows with the opening there, and is 1 but for rounding after 40
-    // lengths of decay.
-    constexpr double broken = 0.99;
-    double           beyond = end + 40. / last.decay;
-    for (unsigned int step = 0; step < 60; ++step)
-      {
-        // At `end` bonds are damaged by less, at `beyond` by more: 60 halvings
-        // leave nothing but rounding.
-        const double middle                       = 0.5 * (end + beyond);
-        (damage(-middle) < broken ? end : beyond) = middle;
-      }
-    return beyond;
   }
 
 

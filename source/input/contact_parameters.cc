@@ -78,27 +78,53 @@ namespace Debond
                        return text.empty() || number.match(text);
                      });
     };
-    table.bind(
+    // An entry with the name of a boundary behind it is for that boundary
+    // alone.
+    const auto bind_number = [&](const std::string      &path,
+                                 ShearParameters::Entry &entry,
+                                 const Pattern          &number,
+                                 const std::string      &documentation,
+                                 const std::string      &units) {
+      table.bind(path, entry.everywhere, none_or(number), documentation, units);
+      table.bind_family(path,
+                        entry.boundaries,
+                        number,
+                        documentation +
+                          ", on the contact boundary or part of this name",
+                        units);
+    };
+    bind_number(
       "Contact law/Bond shear stiffness",
       p.shear.stiffness,
-      none_or(quantity(true)),
+      quantity(true),
       "The stiffness of bonds in shear, with Tangential displacement = bonded: a number, or nothing for that along the normal. Where there are no bonds there are none in shear; the Traction factor multiplies both",
       "force per volume");
+    bind_number(
+      "Contact law/Bond shear strength",
+      p.shear.strength,
+      quantity(),
+      "The strength of bonds that soften in shear, with a Mixed mode: a number, or nothing for that which follows from stiffness and energies with the form of the law",
+      "force per area");
+    bind_number(
+      "Contact law/Shear fracture energy",
+      p.shear.energy,
+      quantity(),
+      "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy, the Bond shear stiffness and, unless Bond shear strength says another one, the strength that follows from these",
+      "energy per area");
+    table.bind_choice(
+      "Contact law/Failure criterion",
+      p.shear.criterion,
+      {{"quadratic", FailureCriterion::quadratic},
+       {"largest", FailureCriterion::largest}},
+      "When bonds with a Bond shear strength begin to soften: if the squares of the tractions along the normal and in shear, as parts of their strengths, sum up to 1, or if one of these parts is 1");
     table.bind_choice(
       "Contact law/Bond failure",
       p.shear.breaks_separately,
       {{"common", false}, {"separate", true}},
       "How bonded ones break: common, in all directions at once with one fracture energy, or separate, along the normal and in shear each by itself");
-    table.bind(
-      "Contact law/Shear fracture energy",
-      p.shear.energy,
-      none_or(quantity()),
-      "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy and the Bond shear stiffness, so that its strength is the one that follows from these",
-      "energy per area");
     // The pattern and the reader share this function, so that what is allowed
     // can be read. A name ends in a blank, behind which its exponent follows.
     const auto parse_mode = [](const std::string &text, double &exponent) {
-      using MixedMode = ShearParameters::MixedMode;
       for (const auto &[name, mode] :
            {std::pair<std::string, MixedMode>{"benzeggagh-kenane ",
                                               MixedMode::benzeggagh_kenane},

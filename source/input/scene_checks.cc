@@ -119,7 +119,10 @@ namespace Debond
          {p.load_path.arc && !p.load_path.bonds_heal,
           "Load path/Arc",
           "needs Load path/Bonds heal = true with bonds that soften, as what "
-          "unloads does not come back on the same curve"}},
+          "unloads does not come back on the same curve"},
+         {p.load_path.arc && p.law.is_by_stiffness,
+          "Load path/Arc",
+          "needs bonds that soften in the same way everywhere"}},
         {"Contact law/Law"},
         table);
     }
@@ -136,6 +139,7 @@ namespace Debond
       const std::string failure    = "Contact law/Bond failure";
       const std::string energy     = "Contact law/Shear fracture energy";
       const std::string mode       = "Contact law/Mixed mode";
+      const std::string strength   = "Contact law/Bond shear strength";
       p.shear.is_somewhere =
         p.tangential_displacement == TangentialDisplacement::bonded;
       for (const auto &[unused, word] : p.tangential_displacements)
@@ -147,13 +151,13 @@ namespace Debond
       if (!p.shear.is_somewhere)
         {
           table.without_effect("Contact law/Bond shear stiffness, " + failure +
-                                 ", " + energy + ", " + mode,
+                                 ", " + energy + ", " + mode + ", " + strength +
+                                 ", Contact law/Failure criterion",
                                "bonds bear no shear",
                                tangential);
           return;
         }
-      const bool has_mode =
-        p.shear.mixed_mode != ShearParameters::MixedMode::none;
+      const bool has_mode = p.shear.mixed_mode != MixedMode::none;
       // The energy is needed in two cases and has no meaning in all others, so
       // that one condition finds both mistakes.
       if ((p.shear.breaks_separately || has_mode) == p.shear.energy.empty())
@@ -161,6 +165,16 @@ namespace Debond
                      "goes with Bond failure = separate or a Mixed mode, which "
                      "need it",
                      {failure, mode});
+      if (!p.shear.strength.empty() &&
+          (!has_mode ||
+           (p.law.name != "bilinear" && p.law.name != "exponential")))
+        table.reject(strength,
+                     "is for a Mixed mode of Law = bilinear or exponential; "
+                     "elsewhere it follows from stiffness and energy",
+                     {mode, "Contact law/Law"});
+      if (p.shear.strength.empty())
+        table.without_effect("Contact law/Failure criterion",
+                             "there is no Bond shear strength");
       if (p.law.pieces.empty())
         return;
       // Bonds that shear have to be springs at first, which is a straight piece

@@ -36,10 +36,12 @@ namespace Debond
     {
       const AdhesiveLaw law(problem.law.pieces);
       double            ratio = 1., energy = 1.;
-      if (read_number(problem.shear.stiffness, ratio))
+      if (read_number(problem.shear.stiffness.everywhere, ratio))
         ratio /= law.second_derivative(0.);
-      if (read_number(problem.shear.energy, energy))
+      if (read_number(problem.shear.energy.everywhere, energy))
         energy /= law.pieces().largest_value();
+      if (!problem.shear.strength.everywhere.empty())
+        return ", strength " + problem.shear.strength.everywhere;
       return words(", strength ",
                    law.bond_strength() * std::sqrt(ratio * energy));
     }
@@ -140,25 +142,34 @@ namespace Debond
                       " quadrature");
       // Bonds that a boundary has for itself, in place of those above.
       for (const auto &[side, bonds] : problem.law.boundaries)
-        record.line(
-          "bonds " + side, "a = ", bonds.stiffness, ", M = ", bonds.threshold);
+        record.line("bonds " + side,
+                    "a = ",
+                    bonds.stiffness,
+                    ", M = ",
+                    bonds.threshold,
+                    bonds.energy.empty() ? "" :
+                                           ", fracture energy " + bonds.energy);
       lines("tangential", problem.tangential_displacements);
+      lines("shear stiffness", problem.shear.stiffness.boundaries);
+      lines("shear strength", problem.shear.strength.boundaries);
+      lines("shear energy", problem.shear.energy.boundaries);
       // The strength in shear can be said only of a law with several pieces
       // whose numbers hold everywhere: one piece never breaks, and bonds that
       // vary have another strength at each point.
       if (problem.shear.is_somewhere)
         record.line("bonds in shear",
-                    problem.shear.stiffness.empty() ?
+                    problem.shear.stiffness.everywhere.empty() ?
                       "stiffness as along the normal" :
-                      "stiffness " + problem.shear.stiffness,
+                      "stiffness " + problem.shear.stiffness.everywhere,
                     problem.law.has_field() || problem.law.pieces.size() == 1 ?
                       "" :
                       strength_in_shear(problem),
                     problem.shear.breaks_separately ?
-                      ", breaking separately, energy " + problem.shear.energy :
+                      ", breaking separately, energy " +
+                        problem.shear.energy.everywhere :
                     problem.shear.energy.empty() ?
                       "" :
-                      ", energy " + problem.shear.energy + ", " +
+                      ", energy " + problem.shear.energy.everywhere + ", " +
                         problem.shear.mixed_mode_text);
     }
   } // namespace

@@ -111,8 +111,8 @@ namespace Debond
     void
     exchange(Archive &archive, BondMemory &memory)
     {
-      archive &memory.reached &memory.toughness &memory.mixity &memory
-        .taken                                                 &memory.lag;
+      archive &memory.reached &memory.mode &memory.mixity &memory.taken &memory
+        .lag;
     }
 
 
@@ -148,7 +148,7 @@ namespace Debond
       exchange(archive, path.points);
       exchange(archive, path.memory);
       // A peak has a step that may be none of the path's.
-      bool has_peak = path.peak.has_value();
+      bool     has_peak = path.peak.has_value();
       archive &has_peak;
       if (!has_peak)
         return;

@@ -84,7 +84,7 @@ namespace
         for (unsigned int i = 0; i < dim; ++i)
           s(i) = -2. * M * (random() % 1000) / 1000.;
         error = std::max(error,
-                         std::abs(broken_zone(boundary, law, adhesion, s) / 3. -
+                         std::abs(broken_zone(boundary, adhesion, s) / 3. -
                                   sampled<dim>(s, M)));
 
         // Once all bonds are broken, all that is open counts.
@@ -92,7 +92,7 @@ namespace
         s(0) = 0.;
         error_for_good =
           std::max(error_for_good,
-                   std::abs(broken_zone(boundary, law, adhesion, s) / 3. - 1.));
+                   std::abs(broken_zone(boundary, adhesion, s) / 3. - 1.));
         error_for_good = std::max(error_for_good,
                                   std::abs(adhesion.dissipated_energy() /
                                              (0.5 * 5. * M * M * 3.) -
@@ -113,7 +113,6 @@ namespace
     const ContactQuadrature<2> nodal({});
     const auto part = [&](const AdhesiveLaw &law, const double opening) {
       return broken_zone(boundary,
-                         law,
                          AdhesionIntegral<2>(boundary, law, nodal),
                          Eigen::Vector2d(0., -opening)) /
              3.;

@@ -325,7 +325,7 @@ test_touching_kink()
   // Beyond -M between (1 -+ sqrt(1/2)) / 2 if it is twice as deep.
   s(2) = -4. * M;
   check("the broken zone of a parabola",
-        std::abs(broken_zone(boundary, law, integral, s) /
+        std::abs(broken_zone(boundary, integral, s) /
                    (std::sqrt(0.5) * boundary.faces[0].measure) -
                  1.),
         1e-6);
@@ -349,7 +349,7 @@ test_broken_zone_of_triangle()
   s(6)        = -M;
   check("the broken zone on a triangle",
         std::abs(
-          broken_zone(boundary, law, integral, s) /
+          broken_zone(boundary, integral, s) /
             (0.25 * (boundary.faces[0].measure + boundary.faces[1].measure)) -
           1.),
         1e-10);

@@ -20,7 +20,6 @@ namespace Debond
   template <int dim>
   double
   broken_zone(const ContactBoundary<dim>  &boundary,
-              const AdhesiveLaw           &law,
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s);
 
@@ -32,7 +31,6 @@ namespace Debond
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,
-         const AdhesiveLaw           &law,
          const AdhesionIntegral<dim> &adhesion,
          const VectorView            &s);
 } // namespace Debond

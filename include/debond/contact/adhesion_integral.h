@@ -17,9 +17,10 @@ namespace Debond
     /// does not come back.
     std::vector<double> reached = {};
 
-    /// Where their fracture energy depends on the mode, what it has been
-    /// multiplied with, the part of shear, and the energy that they have taken.
-    std::vector<double> toughness = {}, mixity = {}, taken = {};
+    /// Where what they take depends on the mode, the part of shear that they
+    /// have had it with, that of the next step, and the energy that they have
+    /// taken.
+    std::vector<double> mode = {}, mixity = {}, taken = {};
 
     /// By how much the energies that bonds have taken would differ with the
     /// modes at the ends of the steps, of those that bore nothing with those
@@ -151,7 +152,7 @@ namespace Debond
     unsigned int
     least_piece(const unsigned int node) const
     {
-      return law.pieces().index(reached(node));
+      return contact_points.bonds_at(node).law->pieces().index(reached(node));
     }
 
     /// Calls @p visit(point, scaled, reached) for all points: sums over them
@@ -170,9 +171,9 @@ namespace Debond
     }
 
     /// The second derivative of Phi at @p s if that of the law is @p of_law
-    /// (scaled, reached), and where bonds shear @p across (scaled, reached)
-    /// in directions in which they open no further: a matrix that couples the
-    /// nodes of a face, and for nodal quadrature no nodes.
+    /// (law, scaled, reached), and where bonds shear @p across (law, scaled,
+    /// reached) in directions in which they open no further: a matrix that
+    /// couples the nodes of a face, and for nodal quadrature no nodes.
     template <typename Curvature, typename Across>
     Eigen::SparseMatrix<double>
     matrix(const VectorView &s,
@@ -181,15 +182,15 @@ namespace Debond
     {
       std::vector<Eigen::Triplet<double>> entries;
       for_each_point(s, [&](const auto &point, double scaled, double reached) {
-        const double curvature =
-          point.force_factor() / point.bonds.length * of_law(scaled, reached);
+        const double curvature = point.force_factor() / point.bonds.length *
+                                 of_law(*point.bonds.law, scaled, reached);
         if (point.shears())
           {
             add_in_all_directions(point,
                                   point.jump(s),
                                   curvature,
                                   point.force_factor() / point.bonds.length *
-                                    across(scaled, reached),
+                                    across(*point.bonds.law, scaled, reached),
                                   entries);
             return;
           }

@@ -7,18 +7,36 @@
 #include <deal.II/base/types.h>
 
 #include <debond/base/entry_error.h>
+#include <debond/contact/law.h>
 
 #include <cmath>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 
 namespace Debond
 {
-  /// The bonds of a point: j_1(s) = energy j(s / length), j being a law that
-  /// holds everywhere.
+  /// How what it takes to break bonds in all directions at once depends on the
+  /// mode.
+  enum class MixedMode
+  {
+    none,
+    benzeggagh_kenane,
+    power_law
+  };
+
+  /// Which tractions break bonds or begin to soften them: with a square sum of
+  /// 1, as parts of the strengths, or one of them.
+  enum class FailureCriterion
+  {
+    quadratic,
+    largest
+  };
+
+
+
+  /// The bonds of a point: j_1(s) = energy j(s / length), j being the law that
+  /// holds everywhere, with a tail of its own.
   struct BondScale
   {
     double energy = 1.;
@@ -32,13 +50,28 @@ namespace Debond
     /// Unless it is 0, bonds in shear break by themselves, with this energy.
     double shear_energy = 0.;
 
+    /// The factor of openings beyond the first piece, see
+    /// AdhesiveLaw::with_tail().
+    double tail = 1.;
+
+    /// Where what bonds take depends on the mode: the fracture energy in shear
+    /// over that of opening, and the strength in shear over that of opening,
+    /// which is 0 if it follows from the energies.
+    double energy_ratio = 1., strength_ratio = 0.;
+
+    /// j, which ContactPoints sets.
+    std::shared_ptr<const AdhesiveLaw> law = {};
+
     /// The bonds in shear of those that break by themselves.
     BondScale
     in_shear() const
     {
-      return {shear_energy,
-              length * std::sqrt(shear_energy / (shear * energy)),
-              1.};
+      BondScale result = *this;
+      result.energy    = shear_energy;
+      result.length *= std::sqrt(shear_energy / (shear * energy));
+      result.shear        = 1.;
+      result.shear_energy = 0.;
+      return result;
     }
 
     /// Gives bonds this many times the energy, with the stiffness they have.
@@ -52,96 +85,116 @@ namespace Debond
 
 
 
+  /// The bonds of a boundary in shear, in units of force and length.
+  struct ShearNumbers
+  {
+    std::optional<double> stiffness = {}; ///< none: as along the normal
+    std::optional<double> strength  = {}; ///< none: follows from the energies
+    std::optional<double> energy    = {}; ///< none: as in opening
+  };
+
+
+
   /// How bonds bear shear.
   struct ShearBonds
   {
     /// The boundaries whose bonds do.
-    std::set<dealii::types::boundary_id> boundaries = {};
+    std::map<dealii::types::boundary_id, ShearNumbers> boundaries = {};
 
-    /// Over the stiffness of the law itself; none: as along the normal.
-    std::optional<double> stiffness = {};
-
-    /// BondScale::shear_energy.
-    double energy = 0.;
-
-    /// Both are multiplied by what the bonds of a point have of the law's
-    /// stiffness.
+    /// The numbers are multiplied by what the bonds of a point have of the
+    /// law's stiffness.
     bool is_relative = false;
 
-    /// The fracture energy over that of opening, by the part of shear in what a
-    /// bond has stored and by BondScale::energy; empty if it is always the
-    /// same.
-    std::function<double(double, double)> toughness = {};
+    /// Bonds in shear break by themselves.
+    bool are_separate = false;
+
+    /// How energy and strength depend on the part m of shear in what a bond has
+    /// stored, between those of opening and those in shear; the exponent is
+    /// that of the formula.
+    MixedMode        mixed_mode = MixedMode::none;
+    double           exponent   = 1.;
+    FailureCriterion criterion  = FailureCriterion::quadratic;
   };
 
 
 
-  /// A stiffness or a threshold that is none somewhere.
+  /// A number of bonds that is none somewhere.
   class BondFieldError : public EntryError
   {
   public:
-    BondFieldError(const bool         is_threshold,
+    /// @p entry: its name in the section Contact law.
+    BondFieldError(const std::string &entry,
                    const std::string &boundary,
                    const std::string &message)
-      : EntryError(is_threshold ? "Contact law/Bond threshold" :
-                                  "Contact law/Bond stiffness",
-                   message)
-      , is_threshold(is_threshold)
+      : EntryError("Contact law/" + entry, message)
       , boundary(boundary)
     {}
 
-    const bool        is_threshold; ///< or a stiffness
-    const std::string boundary;     ///< Bonds::boundary
+    const std::string boundary; ///< Bonds::boundary
   };
 
 
 
-  /// Bonds of the law of winkler_law() whose stiffness a and threshold M vary
-  /// over Gamma_C.
+  /**
+   * Bonds that vary over Gamma_C, or that bear shear. Of a law of springs that
+   * break or soften at a threshold, stiffness and threshold vary, which scale
+   * it, and what it takes once it softens, which is its tail.
+   */
   template <int dim>
   class BondField
   {
   public:
     using Field = std::shared_ptr<const dealii::Function<dim>>;
 
-    /// The bonds of a boundary. A null field stands for the a or M of
-    /// BondField().
+    /// The bonds of a boundary. A null field stands for what the law has.
     struct Bonds
     {
       std::string boundary; ///< its name; empty for those of all others
       Field       stiffness;
-      Field       threshold;
+      Field       threshold; ///< the end of the first piece
+      Field       energy;    ///< fracture energy
     };
 
-    /// Relative to bonds of stiffness @p a and threshold @p M.
-    BondField(const double                                       a,
-              const double                                       M,
+    /// Keeps a reference to @p law. Stiffnesses are factors of it if those of
+    /// @p shear are_relative.
+    BondField(const AdhesiveLaw                                 &law,
               const Bonds                                       &others,
               const std::map<dealii::types::boundary_id, Bonds> &boundaries,
-              const ShearBonds                                  &shear = {})
-      : a(a)
-      , M(M)
-      , others(others)
-      , boundaries(boundaries)
-      , shear(shear)
-    {}
+              const ShearBonds                                  &shear = {});
 
     /// At a point of the boundary @p id. Throws BondFieldError with the place
-    /// if the stiffness is negative or not finite, or the threshold of bonds
-    /// not positive.
+    /// if the stiffness is negative or not finite, the threshold of bonds not
+    /// positive, or their energy less than what they have stored at their
+    /// strength, in some mode.
     BondScale
     at(const dealii::Point<dim>        &point,
        const dealii::types::boundary_id id) const;
 
-    const ShearBonds &
-    shear_bonds() const
+    /// Returns whether what bonds take depends on the mode.
+    bool
+    depends_on_mode() const
     {
-      return shear;
+      return shear.mixed_mode != MixedMode::none;
     }
 
+    /// The bonds that have energy and strength of the part @p m of shear, with
+    /// the stiffness of @p bonds, those of opening.
+    BondScale
+    at_mode(const BondScale &bonds, const double m) const;
+
   private:
-    double                                      a, M;
-    Bonds                                       others;
+    /// Returns the part @p q of opening's fracture energy that bonds take with
+    /// the part @p m of shear, and theirs of opening's strength.
+    double
+    energy_at(const BondScale &bonds, const double m) const;
+
+    double
+    strength_at(const BondScale &bonds, const double m) const;
+
+    const AdhesiveLaw &law;
+    double             a, M;          ///< stiffness and threshold of the law
+    double             stored, taken; ///< by the law on its first piece, later
+    Bonds              others;
     std::map<dealii::types::boundary_id, Bonds> boundaries;
     ShearBonds                                  shear;
   };

@@ -158,9 +158,10 @@ namespace Debond
     using Trace       = typename ContactQuadrature<dim>::Trace;
     using Barycentric = std::array<double, dim>;
 
-    /// Bonds are the same everywhere if @p bond_field is null. Throws as
+    /// Bonds are those of @p law everywhere if @p bond_field is null. Throws as
     /// BondField does.
     ContactPoints(const ContactBoundary<dim>   &contact_boundary,
+                  const AdhesiveLaw            &law,
                   const ContactQuadrature<dim> &quadrature_rule,
                   const BondField<dim>         *bond_field);
 
@@ -180,18 +181,23 @@ namespace Debond
     void
     set_factor(const double factor);
 
-    /// Multiplies the fracture energy of each point, see BondScale::toughen();
-    /// an empty list is of ones.
+    /// Gives the bonds of each point what they have with this part of shear; an
+    /// empty list is of zeros.
     void
-    set_toughness(const std::vector<double> &by_point);
+    set_modes(const std::vector<double> &by_point);
 
-    /// ShearBonds::toughness, null if the energy does not depend on the mode.
-    const std::function<double(double, double)> *
-    toughness_by_mode() const
+    /// Returns whether what bonds take depends on the mode.
+    bool
+    depends_on_mode() const
     {
-      return field != nullptr && field->shear_bonds().toughness ?
-               &field->shear_bonds().toughness :
-               nullptr;
+      return field != nullptr && field->depends_on_mode();
+    }
+
+    /// The bonds of the point number @p q with the part @p m of shear.
+    BondScale
+    at_mode(const std::size_t q, const double m) const
+    {
+      return at_mode(in_opening[q], m);
     }
 
     /// Returns whether all points are vertices, so that each node has a law of
@@ -225,7 +231,7 @@ namespace Debond
     bonds_at(const dealii::Point<dim>        &position,
              const dealii::types::boundary_id id) const
     {
-      return field == nullptr ? BondScale() : field->at(position, id);
+      return with_law(field == nullptr ? BondScale() : field->at(position, id));
     }
 
     BondScale
@@ -236,10 +242,11 @@ namespace Debond
     BondScale
     bonds_at(const unsigned int node) const
     {
-      BondScale bonds = field == nullptr ? BondScale() : bonds_of_nodes[node];
-      if (!toughness_of_nodes.empty())
-        bonds.toughen(toughness_of_nodes[node]);
-      return bonds;
+      if (field == nullptr)
+        return with_law({});
+      return modes.empty() ?
+               bonds_of_nodes[node] :
+               at_mode(bonds_of_nodes[node], modes_of_nodes[node]);
     }
 
     /// The coefficients of the displacement on a face, see bernstein().
@@ -285,11 +292,21 @@ namespace Debond
     void
     separate_shear();
 
-    /// The bonds at a place with the energy of opening.
+    /// Returns @p bonds with their own law, see BondScale::law.
     BondScale
-    bonds_at_first(const Face &face, const Barycentric &place) const;
+    with_law(BondScale bonds) const;
 
-    /// Makes bonds_of_nodes and bonds_of_held.
+    BondScale
+    at_mode(const BondScale &bonds, const double m) const
+    {
+      return m == 0. ? bonds : with_law(field->at_mode(bonds, m));
+    }
+
+    /// The bonds at a place in opening.
+    BondScale
+    in_opening_at(const Face &face, const Barycentric &place) const;
+
+    /// Makes bonds_of_nodes, in opening, and bonds_of_held.
     void
     collect_bonds();
 
@@ -297,17 +314,19 @@ namespace Debond
     collect_points();
 
     const ContactBoundary<dim>   &contact;
+    const AdhesiveLaw            &law;
     const ContactQuadrature<dim> &quadrature;
     const BondField<dim>         *field;
 
-    /// Empty if bonds are the same everywhere.
+    /// In opening; empty if bonds are the same everywhere.
     std::vector<BondScale> bonds_of_nodes, bonds_of_held;
 
     double              load_factor = 1.;
-    std::vector<double> toughness, toughness_of_nodes;
+    std::vector<double> modes, modes_of_nodes; ///< set_modes()
 
     std::vector<ContactPoint<dim>> points;
-    std::vector<unsigned int>      places; ///< in `points`, face by face
+    std::vector<BondScale>         in_opening; ///< of the points
+    std::vector<unsigned int>      places;     ///< in `points`, face by face
   };
 } // namespace Debond
 

@@ -31,6 +31,17 @@ namespace Debond
     /// pushes.
     explicit AdhesiveLaw(const std::vector<EnergyPiece> &pieces);
 
+    /// The law with @p factor times the opening at each traction beyond the
+    /// first piece, as far as it exceeds that of its end: of bonds that soften
+    /// one of the same form with the same stiffness and strength.
+    AdhesiveLaw
+    with_tail(const double factor) const;
+
+    /// The displacement at which bonds have the damage that bonds of @p other,
+    /// a law with another tail, have at @p reached.
+    double
+    reached_as(const AdhesiveLaw &other, const double reached) const;
+
     /// j_1(s).
     double
     value(const double s, const double reached = 0.) const;
@@ -79,8 +90,8 @@ namespace Debond
       return energy_pieces.softens();
     }
 
-    /// Returns whether bonds are nowhere stiffer, by traction over opening, than
-    /// those that are less open.
+    /// Returns whether bonds are nowhere stiffer, by traction over opening,
+    /// than those that are less open.
     bool
     never_stiffens() const;
 
@@ -119,7 +130,10 @@ namespace Debond
     /// they bear nothing then, the one at which damage() comes to 0.99 where
     /// the traction decays, infinite where bonds hold at any distance.
     double
-    broken_beyond() const;
+    broken_beyond() const
+    {
+      return largest_opening;
+    }
 
     /// The largest adhesive traction before the last kink, in force per area
     /// (the paper's a M); zero if there is no adhesion.
@@ -134,6 +148,7 @@ namespace Debond
 
     PiecewiseEnergy          energy_pieces;
     std::vector<std::string> names;
+    double                   largest_opening; ///< broken_beyond()
   };
 
 
@@ -145,12 +160,14 @@ namespace Debond
     std::vector<EnergyPiece> pieces;
     std::string              data; ///< in words, empty if there is none
 
-    /// Expressions for bonds whose stiffness or threshold vary, empty where it
-    /// does not: `pieces` have 1 in their place.
-    std::string stiffness = {}, threshold = {};
+    /// Expressions for bonds whose stiffness, threshold or fracture energy
+    /// vary, empty where it does not: `pieces` have others in their place. The
+    /// threshold is the end of the first piece, and the energy is for bonds
+    /// that soften.
+    std::string stiffness = {}, threshold = {}, energy = {};
 
-    /// True if bonds are given by stiffness and threshold themselves, as in
-    /// winkler_law(); otherwise `stiffness` is a factor of all pieces.
+    /// True if bonds that vary are given by stiffness and threshold themselves;
+    /// otherwise `stiffness` is a factor of all pieces.
     bool is_by_stiffness = false;
 
     /// The entry that `stiffness` is from.
@@ -159,7 +176,7 @@ namespace Debond
     /// The bonds of one boundary, numbers or expressions.
     struct Bonds
     {
-      std::string stiffness, threshold;
+      std::string stiffness, threshold, energy = {};
     };
 
     /// By the names of the boundaries.

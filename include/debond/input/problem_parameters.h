@@ -2,6 +2,7 @@
 #ifndef debond_input_problem_parameters_h
 #define debond_input_problem_parameters_h
 
+#include <debond/contact/bond_field.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
 #include <debond/elasticity/boundary_conditions.h>
@@ -13,21 +14,29 @@ namespace Debond
   /// Bonds in shear, where tangential displacements are bonded.
   struct ShearParameters
   {
-    std::string stiffness; ///< a number, or empty: as along the normal
-    bool        breaks_separately = false;
-    std::string energy; ///< a number, if they break separately or by mode
-
-    /// How the fracture energy of bonds that break in all directions at once
-    /// depends on the part of shear, with the exponent of the formula.
-    enum class MixedMode
+    /// A number as its text, empty if there is none, and those of boundaries by
+    /// their names.
+    struct Entry
     {
-      none,
-      benzeggagh_kenane,
-      power_law
+      std::string                        everywhere;
+      std::map<std::string, std::string> boundaries;
+
+      bool
+      empty() const
+      {
+        return everywhere.empty() && boundaries.empty();
+      }
     };
-    MixedMode   mixed_mode      = MixedMode::none;
-    double      exponent        = 0.;
-    std::string mixed_mode_text = "none";
+
+    Entry stiffness; ///< without one as along the normal
+    Entry strength;  ///< without one it follows from the energies
+    Entry energy;    ///< of bonds that break separately or by mode
+
+    bool             breaks_separately = false;
+    MixedMode        mixed_mode        = MixedMode::none;
+    double           exponent          = 1.; ///< of the mode's formula
+    std::string      mixed_mode_text   = "none";
+    FailureCriterion criterion         = FailureCriterion::quadratic;
 
     bool is_somewhere = false; ///< or all are fixed or free
   };

@@ -4,6 +4,8 @@
 #include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/softening.h>
 
+#include <array>
+#include <optional>
 #include <stdexcept>
 
 namespace Debond
@@ -52,51 +54,116 @@ namespace Debond
 
 
 
-    /// A law of three numbers.
+    /// The numbers or expressions of bonds, in the order of softening_paths.
+    using Texts = std::array<std::string, 3>;
+
+    const Texts paths = {{of_stiffness, of_strength, of_energy}};
+
+
+
+    /// Returns these bonds if all are numbers.
+    std::optional<SofteningBonds>
+    numbers_of(const Texts &texts)
+    {
+      SofteningBonds bonds = {};
+      if (read_number(texts[0], bonds.stiffness) &&
+          read_number(texts[1], bonds.strength) &&
+          read_number(texts[2], bonds.energy))
+        return bonds;
+      return {};
+    }
+
+
+
+    /// The bonds of a field: the first piece ends at strength over stiffness.
+    ContactLawParameters::Bonds
+    bonds_of(const Texts &texts)
+    {
+      // Where there is no stiffness there are no bonds and no threshold.
+      const std::optional<SofteningBonds> numbers = numbers_of(texts);
+      return {texts[0],
+              !numbers ? '(' + texts[1] + ") / (" + texts[0] + ')' :
+              numbers->stiffness == 0. ?
+                         "1" :
+                         shortest_text(numbers->strength / numbers->stiffness),
+              texts[2]};
+    }
+
+
+
+    /// The texts of boundaries that have some of their own, by their names;
+    /// what a boundary does not say is as @p everywhere.
+    std::map<std::string, Texts>
+    texts_of_boundaries(const ParameterTable &table, const Texts &everywhere)
+    {
+      // Entries for one boundary have its name behind that of the entry.
+      std::map<std::string, Texts> result;
+      for (const auto &[path, unused] : table.locations())
+        for (unsigned int k = 0; k < paths.size(); ++k)
+          if (path.compare(0, paths[k].size() + 1, paths[k] + ' ') == 0 &&
+              table.is_set(path) && !table.get(path).empty())
+            result.emplace(path.substr(paths[k].size() + 1), everywhere)
+              .first->second[k] = table.get(path);
+      return result;
+    }
+
+
+
+    /// A law of three numbers, or of some for each place.
     template <ContactLawParameters (*law_of)(const SofteningBonds &)>
     LawMaker
     maker(ParameterTable &)
     {
       // Each number is checked by itself first, then all of them together, so
       // that an error names the entry at fault. That bonds would take less than
-      // they have stored is an error of the fracture energy.
+      // they have stored is an error of the fracture energy. Of bonds that vary
+      // it shows where they are evaluated.
       return [](ParameterTable &table) {
-        const std::string for_winkler =
-          "is for Law = winkler: bonds that soften are the same everywhere but "
-          "for the Traction factor";
-        // The bonds of Law = winkler vary by stiffness and threshold, which
-        // scale one law. Three numbers that vary would change its shape from
-        // point to point, so only a factor of the tractions may vary here.
-        // Entries for one boundary have its name behind that of the entry.
-        for (const auto &[path, unused] : table.locations())
-          for (const std::string &entry :
-               {of_stiffness, of_strength, of_energy})
-            if (path.compare(0, entry.size() + 1, entry + ' ') == 0 &&
-                table.is_set(path))
-              table.reject(path, for_winkler);
         // A number that is not given here has a default for Law = winkler,
         // which is none for other laws.
-        SofteningBonds bonds   = {};
-        bool           has_all = true;
-        for (const auto &[path, number] :
-             {std::make_pair(of_stiffness, &bonds.stiffness),
-              std::make_pair(of_strength, &bonds.strength),
-              std::make_pair(of_energy, &bonds.energy)})
-          if (!table.is_set(path) || !read_number(table.get(path), *number))
+        Texts everywhere;
+        bool  has_all = true;
+        for (unsigned int k = 0; k < paths.size(); ++k)
+          if (everywhere[k] = table.get(paths[k]);
+              !table.is_set(paths[k]) || everywhere[k].empty())
             {
-              table.reject(
-                path,
-                "bonds that soften need a Bond stiffness, a Bond "
-                "strength and a Fracture energy, three numbers; where they "
-                "differ, Traction factor says");
+              table.reject(paths[k],
+                           "bonds that soften need a Bond stiffness, a Bond "
+                           "strength and a Fracture energy");
               has_all = false;
             }
         if (!has_all)
           return ContactLawParameters();
+        const auto boundaries = texts_of_boundaries(table, everywhere);
+        const std::optional<SofteningBonds> same = numbers_of(everywhere);
         try
           {
-            ContactLawParameters law = law_of(bonds);
-            add_traction_factor(table, law);
+            ContactLawParameters law =
+              law_of(same && same->stiffness > 0. ? *same :
+                                                    SofteningBonds{1., 1., 1.});
+            if (same && boundaries.empty())
+              {
+                law_of(*same);
+                add_traction_factor(table, law);
+                return law;
+              }
+            // The law itself is any of them, which the others scale.
+            table.without_effect(traction_factor,
+                                 "bonds vary by stiffness, strength and "
+                                 "fracture energy");
+            const ContactLawParameters::Bonds bonds = bonds_of(everywhere);
+            law.is_by_stiffness                     = true;
+            law.stiffness                           = bonds.stiffness;
+            law.threshold                           = bonds.threshold;
+            law.energy                              = bonds.energy;
+            law.data                                = words("stiffness ",
+                             everywhere[0],
+                             ", strength ",
+                             everywhere[1],
+                             ", fracture energy ",
+                             everywhere[2]);
+            for (const auto &[name, texts] : boundaries)
+              law.boundaries[name] = bonds_of(texts);
             return law;
           }
         catch (const std::invalid_argument &error)

@@ -41,12 +41,21 @@ namespace Debond
     // `weights` what its square counts in l.
     const PiecewiseEnergy &pieces  = adhesion.adhesive_law().pieces();
     const Eigen::VectorXd  weights = lumped_weights(adhesion);
-    if (!adhesion.shears())
-      return lumped_energy(pieces, weights, scales_of_bonds(adhesion));
-    const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
-    const unsigned int          n        = adhesion.n_nodes();
-    SeparableEnergy             result =
+    const unsigned int     n       = adhesion.n_nodes();
+    SeparableEnergy        result =
       lumped_energy(pieces, weights.head(n), scales_of_bonds(adhesion));
+    // Those of a node with a tail of its own are not those of the law.
+    const auto energy_of = [](const BondScale &bonds, const double stiffness) {
+      return bonds.law->pieces().scaled(stiffness * bonds.length * bonds.length,
+                                        bonds.length);
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      if (const BondScale bonds = adhesion.points().bonds_at(i);
+          bonds.tail != 1.)
+        result.f[i] = energy_of(bonds, weights(i));
+    if (!adhesion.shears())
+      return result;
+    const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
     result.bonds.resize(weights.size());
     std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
     result.weights = Eigen::VectorXd::Ones(weights.size());
@@ -68,10 +77,8 @@ namespace Debond
               {
                 is_first = false;
                 bond = static_cast<unsigned int>(result.f.size());
-                result.f.push_back(pieces.scaled(weights(tangent.index) *
-                                                   bonds.length * bonds.length /
-                                                   bonds.shear,
-                                                 bonds.length));
+                result.f.push_back(
+                  energy_of(bonds, weights(tangent.index) / bonds.shear));
                 graph.emplace_back();
               }
             result.bonds[tangent.index] = bond;

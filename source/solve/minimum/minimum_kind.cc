@@ -29,7 +29,7 @@ namespace Debond
       return MinimumKind::global;
     // With an energy that depends on the mode there is no J that it would be a
     // minimum of.
-    if (adhesion.points().toughness_by_mode() != nullptr)
+    if (adhesion.points().depends_on_mode())
       return MinimumKind::stationary;
     // At a drop of the traction J has a concave kink, from which one of the two
     // directions descends. So close to it rounding decides on which side a bond

@@ -68,7 +68,7 @@ namespace Debond
         scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
     , is_bounded(is_homogeneous && !scene.parameters().load_path.bonds_heal &&
                  scene.adhesion().adhesive_law().never_stiffens() &&
-                 scene.adhesion().points().toughness_by_mode() == nullptr)
+                 !scene.adhesion().points().depends_on_mode())
   {}
 
 

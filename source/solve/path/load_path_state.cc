@@ -216,7 +216,7 @@ namespace Debond
     state.equilibrium_residual = verification.equilibrium_residual;
     state.force_imbalance      = verification.force_imbalance;
     state.broken_zone          = verification.broken_zone;
-    state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
+    state.fronts               = fronts(boundary, adhesion, s);
     state.cell_size_at_edge =
       cell_size_at_edge(problem, adhesion, verification);
     state.dissipated_energy = adhesion.dissipated_energy();

@@ -73,8 +73,12 @@ namespace Debond
                   "Boundary conditions/Clamped boundaries";
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
         {
-          if (!bonds->is_threshold)
+          // Bonds that soften have their threshold from the strength.
+          if (entry == "Contact law/Bond stiffness")
             entry = given.law.stiffness_entry;
+          else if (entry == "Contact law/Bond threshold" &&
+                   !given.law.energy.empty())
+            entry = "Contact law/Bond strength";
           if (const std::string own = entry + ' ' + bonds->boundary;
               given.locations.count(own) > 0)
             entry = own;

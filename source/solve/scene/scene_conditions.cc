@@ -121,7 +121,9 @@ namespace Debond
       double     stiffness;
       const bool is_none =
         given.law.pieces[0].curvature == 0. ||
-        (read_number(given.shear.stiffness, stiffness) && stiffness == 0.);
+        (given.shear.stiffness.boundaries.empty() &&
+         read_number(given.shear.stiffness.everywhere, stiffness) &&
+         stiffness == 0.);
       return wanted == TangentialDisplacement::bonded && is_none ?
                TangentialDisplacement::free :
                wanted;
@@ -224,6 +226,60 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// How the bonds of a scene bear shear.
+    ShearBonds
+    shear_bonds(const ProblemParameters  &given,
+                const BoundaryConditions &conditions)
+    {
+      // Of laws that are given by a Traction factor the numbers grow with it.
+      ShearBonds shear;
+      shear.is_relative  = !given.law.is_by_stiffness;
+      shear.are_separate = given.shear.breaks_separately;
+      shear.mixed_mode   = given.shear.mixed_mode;
+      shear.exponent     = given.shear.exponent;
+      shear.criterion    = given.shear.criterion;
+      // What holds everywhere first, then in its place what a boundary has of
+      // its own.
+      const std::vector<std::tuple<std::string,
+                                   const ShearParameters::Entry *,
+                                   std::optional<double> ShearNumbers::*>>
+             entries = {{"Contact law/Bond shear stiffness",
+                         &given.shear.stiffness,
+                         &ShearNumbers::stiffness},
+                        {"Contact law/Bond shear strength",
+                         &given.shear.strength,
+                         &ShearNumbers::strength},
+                        {"Contact law/Shear fracture energy",
+                         &given.shear.energy,
+                         &ShearNumbers::energy}};
+      double number;
+      for (const dealii::types::boundary_id id : conditions.contact)
+        if (conditions.tangential(id) == TangentialDisplacement::bonded)
+          for (const auto &[unused, entry, member] : entries)
+            if (ShearNumbers &numbers = shear.boundaries[id];
+                read_number(entry->everywhere, number))
+              numbers.*member = number;
+      for (const auto &[path, entry, member] : entries)
+        for_contact_boundaries(
+          given,
+          entries_of(path, entry->boundaries),
+          conditions,
+          [&, path = path, entry = entry, member = member](
+            const std::string &name, const dealii::types::boundary_id id) {
+            const auto numbers = shear.boundaries.find(id);
+            if (numbers == shear.boundaries.end())
+              throw EntryError(path + ' ' + name, "bonds bear no shear there");
+            read_number(entry->boundaries.at(name), number);
+            numbers->second.*member = number;
+          });
+      return shear;
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::unique_ptr<BondField<dim>>
   make_bond_field(const ProblemParameters  &given,
@@ -249,10 +305,16 @@ namespace Debond
     // overlap.
     for (const auto &[name, texts] : given.law.boundaries)
       {
-        bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
+        bonds[name] = {name,
+                       field(texts.stiffness),
+                       field(texts.threshold),
+                       field(texts.energy)};
         // Errors name an entry that the scene has for the boundary, that of the
         // stiffness first.
-        for (const std::string entry : {"Bond stiffness", "Bond threshold"})
+        for (const std::string entry : {"Bond stiffness",
+                                        "Bond threshold",
+                                        "Bond strength",
+                                        "Fracture energy"})
           if (const std::string path = "Contact law/" + entry + ' ' + name;
               given.locations.count(path) > 0)
             entries.emplace(name, path);
@@ -265,53 +327,13 @@ namespace Debond
                                const dealii::types::boundary_id id) {
                              boundaries[id] = bonds[name];
                            });
-    // The scales are relative to the law's own stiffness and threshold; of laws
-    // other than the paper's the traction factor takes the place of the
-    // stiffness.
-    ShearBonds shear;
-    shear.is_relative = !given.law.is_by_stiffness;
-    for (const dealii::types::boundary_id id : conditions.contact)
-      if (conditions.tangential(id) == TangentialDisplacement::bonded)
-        shear.boundaries.insert(id);
-    double number;
-    if (!shear.boundaries.empty() && read_number(given.shear.stiffness, number))
-      // The ratio r of the stiffnesses along the boundary and along the normal,
-      // of which the opening sqrt(p^2 + r |t|^2) is made.
-      shear.stiffness = number / law.second_derivative(0.);
-    if (!shear.boundaries.empty() && read_number(given.shear.energy, number))
-      {
-        // The fracture energy of the law is its largest value, which it has
-        // when bonds are broken.
-        const double whole       = number / law.pieces().largest_value();
-        const double power       = given.shear.exponent;
-        const bool   is_relative = shear.is_relative;
-        // G_II / G_I of the bonds of a point. The fracture energy at the part
-        // of shear m, over G_I, is 1 + (G_II / G_I - 1) m^eta by Benzeggagh and
-        // Kenane, and by the power law ((1 - m)^eta + (m G_I / G_II)^eta)^(-1 /
-        // eta).
-        const auto ratio = [=](const double energy) {
-          return is_relative ? whole : whole / energy;
-        };
-        using MixedMode = ShearParameters::MixedMode;
-        if (given.shear.mixed_mode == MixedMode::none)
-          shear.energy = whole;
-        else if (given.shear.mixed_mode == MixedMode::benzeggagh_kenane)
-          shear.toughness = [=](const double m, const double energy) {
-            return 1. + (ratio(energy) - 1.) * std::pow(m, power);
-          };
-        else
-          shear.toughness = [=](const double m, const double energy) {
-            return std::pow(std::pow(1. - m, power) +
-                              std::pow(m / ratio(energy), power),
-                            -1. / power);
-          };
-      }
-    return std::make_unique<BondField<dim>>(
-      shear.is_relative ? 1. : law.curvature(0.),
-      law.bond_threshold(),
-      Bonds{"", field(given.law.stiffness), field(given.law.threshold)},
-      boundaries,
-      shear);
+    return std::make_unique<BondField<dim>>(law,
+                                            Bonds{"",
+                                                  field(given.law.stiffness),
+                                                  field(given.law.threshold),
+                                                  field(given.law.energy)},
+                                            boundaries,
+                                            shear_bonds(given, conditions));
   }
 
 
