@@ -250,30 +250,6 @@ namespace Debond
 
 
 
-  bool
-  AdhesiveLaw::never_stiffens() const
-  {
-    // The secant is monotone on each piece: where the traction decays it falls,
-    // otherwise it is that of a straight line.
-    double last = infinity;
-    for (unsigned int k = 0; k < energy_pieces.size(); ++k)
-      {
-        const PiecewiseEnergy::Piece piece = energy_pieces[k];
-        for (const double s : {piece.upper, piece.lower})
-          {
-            if (s == 0. || std::isinf(s))
-              continue;
-            const double secant = piece.derivative(s) / s;
-            if (secant > (1. + Tolerance::rounding_of_data) * last)
-              return false;
-            last = secant;
-          }
-      }
-    return energy_pieces[energy_pieces.size() - 1].curvature <= last;
-  }
-
-
-
   std::vector<double>
   AdhesiveLaw::kinks() const
   {

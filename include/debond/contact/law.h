@@ -90,11 +90,6 @@ namespace Debond
       return energy_pieces.softens();
     }
 
-    /// Returns whether bonds are nowhere stiffer, by traction over opening,
-    /// than those that are less open.
-    bool
-    never_stiffens() const;
-
     /// Returns the places where j_1 is not twice differentiable, in ascending
     /// order.
     std::vector<double>

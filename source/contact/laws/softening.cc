@@ -55,15 +55,16 @@ namespace Debond
 
 
     /// The numbers or expressions of bonds, in the order of softening_paths.
-    using Texts = std::array<std::string, 3>;
+    using SofteningTexts = std::array<std::string, 3>;
 
-    const Texts paths = {{of_stiffness, of_strength, of_energy}};
+    const SofteningTexts softening_paths = {
+      {of_stiffness, of_strength, of_energy}};
 
 
 
     /// Returns these bonds if all are numbers.
     std::optional<SofteningBonds>
-    numbers_of(const Texts &texts)
+    numbers_of(const SofteningTexts &texts)
     {
       SofteningBonds bonds = {};
       if (read_number(texts[0], bonds.stiffness) &&
@@ -77,7 +78,7 @@ namespace Debond
 
     /// The bonds of a field: the first piece ends at strength over stiffness.
     ContactLawParameters::Bonds
-    bonds_of(const Texts &texts)
+    bonds_of(const SofteningTexts &texts)
     {
       // Where there is no stiffness there are no bonds and no threshold.
       const std::optional<SofteningBonds> numbers = numbers_of(texts);
@@ -93,16 +94,20 @@ namespace Debond
 
     /// The texts of boundaries that have some of their own, by their names;
     /// what a boundary does not say is as @p everywhere.
-    std::map<std::string, Texts>
-    texts_of_boundaries(const ParameterTable &table, const Texts &everywhere)
+    std::map<std::string, SofteningTexts>
+    texts_of_boundaries(const ParameterTable &table,
+                        const SofteningTexts &everywhere)
     {
       // Entries for one boundary have its name behind that of the entry.
-      std::map<std::string, Texts> result;
+      std::map<std::string, SofteningTexts> result;
       for (const auto &[path, unused] : table.locations())
-        for (unsigned int k = 0; k < paths.size(); ++k)
-          if (path.compare(0, paths[k].size() + 1, paths[k] + ' ') == 0 &&
+        for (unsigned int k = 0; k < softening_paths.size(); ++k)
+          if (path.compare(0,
+                           softening_paths[k].size() + 1,
+                           softening_paths[k] + ' ') == 0 &&
               table.is_set(path) && !table.get(path).empty())
-            result.emplace(path.substr(paths[k].size() + 1), everywhere)
+            result
+              .emplace(path.substr(softening_paths[k].size() + 1), everywhere)
               .first->second[k] = table.get(path);
       return result;
     }
@@ -121,13 +126,13 @@ namespace Debond
       return [](ParameterTable &table) {
         // A number that is not given here has a default for Law = winkler,
         // which is none for other laws.
-        Texts everywhere;
-        bool  has_all = true;
-        for (unsigned int k = 0; k < paths.size(); ++k)
-          if (everywhere[k] = table.get(paths[k]);
-              !table.is_set(paths[k]) || everywhere[k].empty())
+        SofteningTexts everywhere;
+        bool           has_all = true;
+        for (unsigned int k = 0; k < softening_paths.size(); ++k)
+          if (everywhere[k] = table.get(softening_paths[k]);
+              !table.is_set(softening_paths[k]) || everywhere[k].empty())
             {
-              table.reject(paths[k],
+              table.reject(softening_paths[k],
                            "bonds that soften need a Bond stiffness, a Bond "
                            "strength and a Fracture energy");
               has_all = false;

@@ -67,7 +67,6 @@ namespace Debond
         !scene.problem().unknowns().has_gap() &&
         scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
     , is_bounded(is_homogeneous && !scene.parameters().load_path.bonds_heal &&
-                 scene.adhesion().adhesive_law().never_stiffens() &&
                  !scene.adhesion().points().depends_on_mode())
   {}
 

@@ -12,10 +12,12 @@ namespace Debond
    *
    * Without other loads and without gaps everything but the bonds is
    * homogeneous: bonds that keep what they have make F proportional to d, and
-   * those that lose some of it make it less. So on the way from d_0 to d the
-   * force is at most F_0 d / d_0, and a step is halved until this bound of each
-   * part is no more than the largest force that was found by more than
-   * `Load path/Resolve`. From d = 0 a small part of the way tells F_0 / d_0.
+   * those that lose some of it make it less. (Bonds that do not heal have no
+   * tractions that rise more than in proportion to the opening.) So on the way
+   * from d_0 to d the force is at most F_0 d / d_0, and a step is halved until
+   * this bound of each part is no more than the largest force that was found by
+   * more than `Load path/Resolve`. From d = 0 a small part of the way tells F_0
+   * / d_0.
    *
    * With other loads or gaps, bonds that heal, and energies that depend on the
    * mode this is no bound, and tells only where to look; with the first two
