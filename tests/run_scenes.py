@@ -19,7 +19,7 @@ SECTIONS = {
     "Mesh": "Lengths|Cells|Cuts|Degree|Source|File|Rotation|Generator|Arguments|Refinements|Scale",
     "Material": "Young mod|Poisson ratio|Shear moduli|Axis angle|Thermal expansion|Hypothesis",
     "Load path": "Factors|Displacement factors|Arc|Bonds heal|Global branch|Dead loads|Resolve",
-    "Contact law": "Law|Quadrature|Tangential|Bond |Fracture|Shear fracture|Mixed mode|Curve|"
+    "Contact law": "Law|Quadrature|Tangential|Bond |Fracture|Shear fracture|Mixed mode|Failure|Curve|"
                    "Initial gap|Traction factor",
     "Boundary conditions": "Clamped|Roller|Contact boundary|Foundation normal|Displacement ",
     "Loads": "Traction |Pressure |Force |Body force|Temperature change",

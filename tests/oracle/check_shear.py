@@ -8,6 +8,7 @@ and with other solvers."""
 import math
 import pathlib
 import sys
+from random import Random
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from run_scenes import Scenes, turned
@@ -548,6 +549,112 @@ def check_mixed_mode():
     errors = solve(*strips("D10", 1.), "Mixed mode=power law 1",
                    "Shear fracture energy=0.05")["errors"]
     check("a single state is refused", "Contact law/Mixed mode" in errors, errors)
+
+
+class Six:
+    """Bonds of six free numbers in the effective opening at a fixed mode m."""
+
+    def __init__(self, law, mode, eta, criterion, numbers):
+        self.numbers = numbers
+        self.K, self.Ks, self.N, self.T, self.G1, self.G2 = numbers
+        self.law, self.mode, self.eta, self.criterion = law, mode, eta, criterion
+
+    def at(self, m):
+        """Strength, energy, end of the spring."""
+        parts = (1 - m) / self.N**2, self.Ks / self.K * m / self.T**2
+        strength = (sum(parts) if self.criterion == "quadratic" else max(parts))**-.5
+        energy = (self.G1 + (self.G2 - self.G1) * m**self.eta if "kenane" in self.mode else
+                  (((1 - m) / self.G1)**self.eta + (m / self.G2)**self.eta)**(-1 / self.eta))
+        return strength, energy, strength / self.K
+
+    def state(self, m, opening, most):
+        """What has been taken, and what is stored."""
+        strength, energy, first = self.at(m)
+        if most <= first:
+            return 0., .5 * self.K * opening**2
+        if self.law == "bilinear":
+            last = 2 * energy / strength
+            traction = max(0., strength * (last - most) / (last - first))
+            whole = energy - .5 * traction * max(0., last - most)
+        else:
+            rest = energy - .5 * strength * first
+            traction = strength * math.exp(-strength * (most - first) / rest)
+            whole = energy - rest * traction / strength
+        return whole - .5 * traction * most, .5 * traction / most * opening**2
+
+    def entries(self, name=""):
+        """Of a part of the boundary, or with what holds for all."""
+        own = [f"{entry}{name}={number!r}" for entry, number in zip(
+            ("Bond stiffness", "Bond shear stiffness", "Bond strength", "Bond shear strength",
+             "Fracture energy", "Shear fracture energy"), self.numbers)]
+        return own if name else [
+            *own, "Bond threshold=", "Law=" + self.law, f"Mixed mode={self.mode} {self.eta!r}",
+            "Failure criterion=" + self.criterion, BONDED]
+
+
+def six_numbers(random, law, mode, criterion):
+    """Of which bonds can break: they take more than they have stored, in any mode."""
+    while True:
+        K, r = random.choice((50., 1e4)), random.uniform(.2, 3)
+        N, T = random.uniform(.5, 2), random.uniform(.5, 2)
+        bonds = Six(law, mode, random.choice((1., 1.7, 2.5)), criterion, (
+            K, K * r, N, T, random.uniform(1.3, 8) * N * N / 2 / K,
+            random.uniform(1.3, 8) * T * T / 2 / K / r))
+        if all(energy > 1.02 * .5 * strength * first for strength, energy, first in map(
+                bonds.at, (.01 * k for k in range(101)))):
+            return bonds
+
+
+def check_six_numbers():
+    """At one mode throughout bonds have the strength of the criterion and the energy of the
+    mode, whatever else they are made of; here on two parts of the bottom, or by place."""
+    random = Random(7)
+    for number in range(48):
+        law, mode, criterion = (random.choice(choices) for choices in (
+            ("bilinear", "exponential"), ("benzeggagh-kenane", "power law"),
+            ("quadratic", "largest")))
+        here = six_numbers(random, law, mode, criterion)
+        weak = six_numbers(random, law, mode, criterion)
+        weak.eta = here.eta
+        by_place = number % 3 == 0
+        if by_place:
+            # Numbers in shear are those of a part; one of the others is an expression here.
+            weak.numbers = weak.K, weak.Ks, weak.N, weak.T, weak.G1, weak.G2 = (
+                here.K, here.Ks, here.N, here.T, here.G1 * 1.07, here.G2)
+            entries = [e if not e.startswith("Fracture") else
+                       f"Fracture energy=if(x < 1, {weak.G1!r}, {here.G1!r})"
+                       for e in here.entries()]
+        else:
+            entries = [*here.entries(), "Parts/weak=bottom: x < 1", *weak.entries(" weak")]
+        slip, normal = random.uniform(0, 1), random.uniform(0, 1)
+        if number % 5 == 0:
+            slip, normal = (0., 1.) if number % 2 else (1., 0.)
+        # Parts of shear and openings at a displacement of 1. The first steps show the modes of
+        # both before they soften.
+        at_one = []
+        for bonds in (here, weak):
+            square = normal**2 + bonds.Ks / bonds.K * slip**2
+            at_one.append((bonds, 1 - normal**2 / square, square**.5))
+        ends = [bonds.at(m)[2] / opening for bonds, m, opening in at_one]
+        steps = [*sorted(.3 * end for end in ends), *(max(ends) * random.uniform(.1, 6) for _ in range(6)),
+                 1e3 * max(ends)]
+        path = solve("Lengths=2, 1", "Cells=2, 1", "Young modulus=1e9", "Poisson ratio=0",
+                     "Clamped boundaries=", "Quadrature=gauss 2", "Contact boundary=bottom",
+                     "Displacement top=" + vector(slip, normal), *entries,
+                     f"Displacement left=free; {normal!r}", f"Displacement right=free; {normal!r}",
+                     *NO_HEALING, "Displacement factors=" + ", ".join(map(repr, steps)))
+        at = f"{number}, {law}, {mode}, {criterion}"
+        check(f"{at} has all steps", len(path["path"]) == len(steps), path["errors"])
+        most = 0.
+        for row, factor in zip(path["path"], steps):
+            most = max(most, factor)
+            taken = stored = 0.
+            for bonds, m, opening in at_one:
+                one, other = bonds.state(m, factor * opening, most * opening)
+                taken, stored = taken + one, stored + other
+            scale = here.G1 + here.G2 + weak.G1 + weak.G2
+            close(f"{at}, {factor}: dissipated", row["dissipated_energy"], taken, 1e-4, scale)
+            close(f"{at}, {factor}: J", row["J"], taken + stored, 3e-4, scale + stored)
 
 
 def check_opening():
