@@ -322,8 +322,15 @@ namespace Debond
                      const LoadFactors             factors,
                      const std::optional<Reached> &reached)
       {
-        if (!seeks_force() || (reached && !reached->end.step.message.empty()))
+        if (!seeks_force())
           return true;
+        // Beyond a state that was not found there may be any force.
+        if (reached && !reached->end.step.message.empty())
+          {
+            if (progress.peak)
+              progress.peak->bound.reset();
+            return true;
+          }
         const dealii::Timer              timer;
         std::optional<LoadPathPeak<dim>> peak = progress.peak;
         n_inside                              = 0;
