@@ -152,6 +152,9 @@ namespace Debond
     result.tangential_forces   = at_contact_nodes(tangential, unknowns);
     set_reactions(unknowns, clamped, result);
     add_held_forces(unknowns, held_forces, result);
+    // Forces are those at contact nodes, and vertices whose normal displacement
+    // is known are none. A tangent that a support moves has its number among
+    // the held vertices, as its force has.
     const auto &nodes = unknowns.contact().boundary().nodes;
     for (unsigned int i = 0; i < nodes.size(); ++i)
       for (const auto &tangent : nodes[i].tangents)

@@ -455,8 +455,7 @@ namespace Debond
         }))
       throw std::invalid_argument(
         "The displacement is not finite and cannot be verified: the data of "
-        "the "
-        "scene are too large or too small for double precision.");
+        "the scene are too large or too small for double precision.");
 
     // All that follows is from A u - f, which is summed up from the stresses in
     // the cells, without any figure of the solver. At the contact normals it is

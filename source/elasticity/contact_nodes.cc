@@ -215,9 +215,10 @@ namespace Debond
         number(boundary.nodes);
         number(boundary.held_vertices);
         // Vertices that are held at the foundation, without a gap and without
-        // tangents, have an opening that is always zero, and their bonds have
-        // no energy and no force. If all held vertices are such, nobody who
-        // sums over them need see them.
+        // tangents, have an opening that is always zero, and bonds at them have
+        // no energy and no force. What bonds between nodes pull at them with,
+        // within a cell, is left in the reaction of the support. If all held
+        // vertices are such, nobody who sums over them need see them.
         if (std::all_of(boundary.held_vertices.begin(),
                         boundary.held_vertices.end(),
                         [](const auto &vertex) {

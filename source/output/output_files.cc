@@ -18,12 +18,19 @@ namespace Debond
     // system's reason, if it is written at all.
     if (!is_first_rank())
       return;
+    const auto remove = [&directory](const std::string &name) {
+      const auto      path = std::filesystem::path(directory) / name;
+      std::error_code error;
+      return std::filesystem::is_regular_file(path, error) &&
+             std::filesystem::remove(path, error);
+    };
     for (const OutputFile &file : files)
       {
-        const auto      path = std::filesystem::path(directory) / file.name;
-        std::error_code error;
-        if (std::filesystem::is_regular_file(path, error))
-          std::filesystem::remove(path, error);
+        remove(file.name);
+        // An earlier run may have had more ranks, each with a piece.
+        if (std::filesystem::path(file.name).extension() == ".pvtu")
+          for (unsigned int rank = 0; remove(piece_file(file.name, rank));)
+            ++rank;
       }
   }
 

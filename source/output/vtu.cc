@@ -404,16 +404,12 @@ namespace Debond
         write_atomically(file_name, write);
         return;
       }
-    const std::filesystem::path path(file_name);
-    const auto                  of_rank = [&path](const unsigned int rank) {
-      return path.stem().string() + ".rank" + std::to_string(rank) + ".vtu";
-    };
     std::vector<std::string> names;
     for (unsigned int rank = 0; rank < n_ranks; ++rank)
-      names.push_back(of_rank(rank));
+      names.push_back(
+        std::filesystem::path(piece_file(file_name, rank)).filename().string());
     on_all_ranks(ranks, [&]() {
-      write_own_file(
-        (path.parent_path() / of_rank(rank_of_this(ranks))).string(), write);
+      write_own_file(piece_file(file_name, rank_of_this(ranks)), write);
     });
     write_atomically(joined_file(file_name, ranks), [&](std::ostream &file) {
       write_pvtu(grid, names, file);
@@ -429,6 +425,16 @@ namespace Debond
                                          std::filesystem::path(file_name)
                                            .replace_extension(".pvtu")
                                            .string();
+  }
+
+
+
+  std::string
+  piece_file(const std::string &file_name, const unsigned int rank)
+  {
+    return std::filesystem::path(file_name)
+      .replace_extension(".rank" + std::to_string(rank) + ".vtu")
+      .string();
   }
 
 

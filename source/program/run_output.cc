@@ -125,8 +125,10 @@ namespace Debond
     remove_files(path_output->files({}, {}), output.directory);
     path_output->remove_steps();
     written.push_back(state_file(output.directory));
+    // An exception here would hide the error that is the reason.
+    std::error_code error;
     for (const std::string &file : written)
-      std::filesystem::remove(file);
+      std::filesystem::remove(file, error);
     lock->withdraw();
   }
 

@@ -252,6 +252,10 @@ def check_start(directory):
     iterations = int(re.search(r"^  iterations +(\d+)", out, re.MULTILINE).group(1))
     if code != 0 or iterations > 10:
         fail("from a start:", code, iterations, errors)
+    # Pieces of more ranks do not remain beside the body of fewer.
+    run(1, [scene], MM, folder)
+    if [file for file in os.listdir(folder) if file.startswith("body") and file != "body.vtu"]:
+        fail("pieces remain:", os.listdir(folder))
     print("start")
 
 

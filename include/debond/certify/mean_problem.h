@@ -58,7 +58,7 @@ namespace Debond
    * Makes these problems (theorems 1 and 2 of
    * doc/reference/certificate.md) of a body, for shifts that are chosen here.
    * All that is given or returned by side is in the order of
-   * EquilibriumProblem::contact_sides().
+   * EquilibriumMesh::contact_sides.
    */
   class MeanProblems
   {

@@ -12,8 +12,8 @@ namespace Debond
   template <int dim>
   struct ComingOff
   {
-    /// About the mean of the contact nodes, whose largest normal displacement
-    /// is 1.
+    /// About the mean of the contact nodes, whose largest displacement, along
+    /// the normal or along a tangent that is an unknown, is 1.
     RigidMotion<dim> motion;
 
     /// The work of the loads for each unit of that displacement: a force.

@@ -35,6 +35,10 @@ namespace Debond
   std::string
   joined_file(const std::string &file_name, const MPI_Comm ranks);
 
+  /// The file with the cells of a rank, of several.
+  std::string
+  piece_file(const std::string &file_name, const unsigned int rank);
+
   /**
    * Writes the contact boundary as VTU, with the fields that
    * doc/reference/output.md has. A face is cut into the shares of its vertices,

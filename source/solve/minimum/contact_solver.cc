@@ -127,11 +127,10 @@ namespace Debond
                Progress                    &progress) override
       {
         // All factors share one factorisation: another load costs its two
-        // triangular solves. The whole load costs none, unless bonds have
-        // broken for good, which have another energy at s = 0.
+        // triangular solves. The whole load costs none, unless bonds have a
+        // memory, with which their energy at s = 0 is another one.
         const bool is_whole =
-          factors == LoadFactors(1.) &&
-          bonds.value_at_zero() == scene.adhesion().value_at_zero();
+          factors == LoadFactors(1.) && bonds.memory().empty();
         here.emplace(is_whole ? whole :
                                 at_factors(whole, problem, bonds, factors));
         // The bundle's epsilon_s is a part of the energy of the body without

@@ -20,11 +20,11 @@ namespace Debond
     LoadPathState<dim> state;
     unsigned int       iterations; ///< of majorise-minimise
 
-    /// The factor at which, on the way from the last one, the first bond broke
-    /// or closed, if one did: on straight pieces of the way displacements are
-    /// linear in the factor. It is the factor of prescribed displacements if
-    /// that of the loads stayed the same. It is known with nodal quadrature,
-    /// but for the first step.
+    /// The factor at which, on the way from the last one, the first bond went
+    /// over to another piece of the law, if one did, see first_bond_change().
+    /// It is the factor of prescribed displacements if that of the loads stayed
+    /// the same. None is known for the first step, without S, and if bonds
+    /// soften or, between nodes, if vertices are held.
     std::optional<double> change_factor;
 
     /// The global branch at this factor, if it was computed.
