@@ -119,7 +119,7 @@ namespace Debond
           return finish(SolverStatus::interrupted, left());
         if (result.history.size() == parameters.maximum_iterations)
           return finish(SolverStatus::iteration_limit,
-                        left() + " Try more iterations.");
+                        left() + " Try more Maximum iterations.");
 
         // Majorise. As long as the majorant changes it needs no exact minimum.
         // If it is the one before, x is its minimum but for what the last
