@@ -155,7 +155,8 @@ namespace Debond
             // The law itself is any of them, which the others scale.
             table.without_effect(traction_factor,
                                  "bonds vary by stiffness, strength and "
-                                 "fracture energy");
+                                 "fracture energy",
+                                 of_stiffness);
             const ContactLawParameters::Bonds bonds = bonds_of(everywhere);
             law.is_by_stiffness                     = true;
             law.stiffness                           = bonds.stiffness;
