@@ -3,6 +3,7 @@
 // the faces' energies.
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/contact/laws/softening.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <cmath>
@@ -45,16 +46,15 @@ namespace
 
 
   BondField<2>
-  field(const double a, const double M)
+  field(const AdhesiveLaw &law, const double a, const double M)
   {
     const auto constant = [](const double value) {
       return std::make_shared<const dealii::Functions::ConstantFunction<2>>(
         value);
     };
-    return {a_1,
-            M_1,
-            {"", nullptr, nullptr},
-            {{2, {"second", constant(a), constant(M)}}}};
+    return {law,
+            {"", nullptr, nullptr, nullptr},
+            {{2, {"second", constant(a), constant(M), nullptr}}}};
   }
 
 
@@ -74,8 +74,8 @@ main(int argc, char **)
   print_figures                     = argc > 1;
   const ContactBoundary<2> boundary = two_faces();
   const AdhesiveLaw        law(winkler_law(a_1, M_1).pieces);
-  const BondField<2>       two = field(a_2, M_2), equal = field(a_1, M_1);
-  const auto               rule = [&](const std::string &name) {
+  const BondField<2> two = field(law, a_2, M_2), equal = field(law, a_1, M_1);
+  const auto         rule = [&](const std::string &name) {
     return ContactQuadrature<2>(ContactQuadratureParameters::parse(name));
   };
   const ContactQuadrature<2> nodal = rule("nodal");
@@ -124,13 +124,13 @@ main(int argc, char **)
   {
     // k (1 - x) as it is written, with rounding at its end: zero. More than
     // that is negative.
-    const auto below_zero = [](const double value) {
+    const auto below_zero = [&law](const double value) {
       return BondField<2>(
-        a_1,
-        M_1,
+        law,
         {"",
          std::make_shared<dealii::ScalarFunctionFromFunctionObject<2>>(
            [value](const dealii::Point<2> &) { return value; }),
+         nullptr,
          nullptr},
         {});
     };
@@ -146,5 +146,34 @@ main(int argc, char **)
         is_refused = true;
       }
     check("a negative one is refused", is_refused);
+  }
+  // A bilinear law of stiffness K and strength N that takes G, from one that
+  // takes less: the traction falls to 0 at 2 G / N. The damage of an opening d
+  // is 1 - N (2 G / N - d) / (2 G / N - N / K) / (K d).
+  {
+    const double      K = 50., N = 2., G = 0.3, first = N / K, end = 2. * G / N;
+    const double      less = 0.1;
+    const AdhesiveLaw base(bilinear_law({K, N, less}).pieces);
+    const AdhesiveLaw longer =
+      base.with_tail((G - N * first / 2.) / (less - N * first / 2.));
+    const auto traction = [&](const double d) {
+      return N * (end - d) / (end - first);
+    };
+    check("what it takes", relative(longer.pieces().largest_value(), G), 1e-13);
+    check("its end", relative(longer.bond_threshold(), end), 1e-13);
+    for (const double d : {0.05, 0.1, 0.25})
+      {
+        check("traction", relative(-longer.derivative(-d), traction(d)), 1e-13);
+        check("damage",
+              relative(longer.damage(-d), 1. - traction(d) / (K * d)),
+              1e-13);
+        const double there = base.reached_as(longer, -d);
+        check("the same damage on the shorter one",
+              relative(base.damage(there), longer.damage(-d)),
+              1e-13);
+        check("and back", relative(longer.reached_as(base, there), -d), 1e-12);
+      }
+    check("without damage there is nothing to be carried over",
+          base.reached_as(longer, -0.5 * first) == -0.5 * first);
   }
 }
