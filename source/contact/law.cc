@@ -25,14 +25,14 @@ namespace Debond
         return last.is_flat() ? end : infinity;
       // Damage grows with the opening there, and is 1 but for rounding after 40
       // lengths of decay.
-      constexpr double broken = 0.99;
-      double           beyond = end + 40. / last.decay;
+      double beyond = end + 40. / last.decay;
       for (unsigned int step = 0; step < 60; ++step)
         {
           // At `end` bonds are damaged by less, at `beyond` by more: 60
           // halvings leave nothing but rounding.
-          const double middle                           = 0.5 * (end + beyond);
-          (law.damage(-middle) < broken ? end : beyond) = middle;
+          const double middle = 0.5 * (end + beyond);
+          (law.damage(-middle) < AdhesiveLaw::broken_damage ? end : beyond) =
+            middle;
         }
       return beyond;
     }

@@ -97,7 +97,7 @@ namespace Debond
          std::vector<std::tuple<bool, std::string, std::string>>{
            {body.source != BodyParameters::Source::box,
             "Mesh/Source is not box",
-            "Mesh/Lengths, Mesh/Cells"},
+            "Mesh/Lengths, Mesh/Cells, Mesh/Origin"},
            {p.dimension == 3, "Dimension is 3", "Material/Hypothesis"},
            {p.loads.temperature_change.empty(),
             "there is no Loads/Temperature change",

@@ -66,10 +66,19 @@ namespace Debond
 
 
 
-    /// A number, or a range.
+    /// A number, a range, or "NUMBER x COUNT".
     std::vector<double>
     parse_item(const std::string &item)
     {
+      if (const auto x = item.find(" x "); x != std::string::npos)
+        {
+          double number, count;
+          if (read_number(item.substr(0, x), number) &&
+              read_number(item.substr(x + 3), count) && count >= 1. &&
+              count <= most_factors && count == std::floor(count))
+            return std::vector<double>(static_cast<std::size_t>(count), number);
+          throw std::invalid_argument("'" + item + "' is not NUMBER x COUNT");
+        }
       std::vector<double> numbers;
       for (const std::string &word :
            dealii::Utilities::split_string_list(item, ':'))
@@ -87,7 +96,9 @@ namespace Debond
             return range(item, numbers[0], numbers[1], numbers[2]);
           default:
             throw std::invalid_argument(
-              "'" + item + "' is neither a number nor a range FIRST:STEP:LAST");
+              "'" + item +
+              "' is neither a number nor a range FIRST:STEP:LAST nor NUMBER x "
+              "COUNT");
         }
     }
   } // namespace
@@ -118,8 +129,8 @@ namespace Debond
       table.declare(
         path,
         "",
-        Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
-                "commas"),
+        Pattern("nothing, or numbers, ranges FIRST:STEP:LAST and repetitions "
+                "NUMBER x COUNT, separated by commas"),
         documentation,
         "none",
         [&factors](const std::string &text) {

@@ -83,6 +83,13 @@ namespace Debond
       "length",
       table);
     bind_for_each_dimension(
+      "Mesh/Origin",
+      body.box.origin,
+      number(),
+      "Where the box begins instead, one coordinate for each dimension, or two of them",
+      "length",
+      table);
+    bind_for_each_dimension(
       "Mesh/Cells",
       body.box.cells,
       whole_number(1, 1000000),

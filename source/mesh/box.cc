@@ -60,6 +60,49 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Where a box is.
+    template <int dim>
+    class Place
+    {
+    public:
+      explicit Place(const BoxParameters &box)
+        : is_turned(box.rotation != 0.)
+        , rotation(rotation_matrix<dim>(box.rotation))
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          origin[d] = box.origin[d];
+      }
+
+      /// Of a point of the box that begins at zero.
+      dealii::Point<dim>
+      of(const dealii::Point<dim> &point) const
+      {
+        // What is not turned keeps its last digits.
+        const dealii::Point<dim> moved = point + origin;
+        return is_turned ? dealii::Point<dim>(rotation * moved) : moved;
+      }
+
+      /// The way back.
+      dealii::Tensor<1, dim>
+      in_box(const dealii::Point<dim> &point) const
+      {
+        return (is_turned ?
+                  dealii::Tensor<1, dim>(dealii::transpose(rotation) * point) :
+                  dealii::Tensor<1, dim>(point)) -
+               origin;
+      }
+
+    private:
+      const bool                   is_turned;
+      const dealii::Tensor<2, dim> rotation;
+      dealii::Tensor<1, dim>       origin;
+    };
+  } // namespace
+
+
+
   template <int dim>
   MeshData<dim>
   part_of_box(const BoxParameters               &box,
@@ -93,15 +136,12 @@ namespace Debond
         return point;
       },
       cells);
-    // The rotation comes after the subdivision: centres are means of corners
-    // with short coordinates then, and each vertex is turned by itself.
-    MeshData<dim> crossed = crossed_subdivision(cells);
-    if (box.rotation != 0.)
-      {
-        const auto rotation = rotation_matrix<dim>(box.rotation);
-        for (dealii::Point<dim> &vertex : crossed.vertices)
-          vertex = dealii::Point<dim>(rotation * vertex);
-      }
+    // The box is moved and turned after the subdivision: centres are means of
+    // corners with short coordinates then.
+    MeshData<dim>    crossed = crossed_subdivision(cells);
+    const Place<dim> place(box);
+    for (dealii::Point<dim> &vertex : crossed.vertices)
+      vertex = place.of(vertex);
     return crossed;
   }
 
@@ -116,11 +156,11 @@ namespace Debond
     class Lattice
     {
     public:
-      using Place = std::array<unsigned int, dim>;
+      using Number = std::array<unsigned int, dim>;
 
       explicit Lattice(const BoxParameters &box)
         : box(box)
-        , rotation(rotation_matrix<dim>(box.rotation))
+        , place_of_box(box)
       {
         // Places are numbered with the first coordinate running fastest.
         // Corners, centres of cells and, in 3D, centres of faces have a vertex;
@@ -146,8 +186,7 @@ namespace Debond
             if (n_odd == 1)
               continue;
             numbers[k] = static_cast<unsigned int>(vertices.size());
-            vertices.push_back(
-              box.rotation == 0. ? x : dealii::Point<dim>(rotation * x));
+            vertices.push_back(place_of_box.of(x));
           }
       }
 
@@ -157,10 +196,7 @@ namespace Debond
       typename LinearFields<dim>::Weights
       weights_at(const dealii::Point<dim> &point) const
       {
-        const dealii::Tensor<1, dim> x =
-          box.rotation == 0. ?
-            dealii::Tensor<1, dim>(point) :
-            dealii::Tensor<1, dim>(dealii::transpose(rotation) * point);
+        const dealii::Tensor<1, dim> x = place_of_box.in_box(point);
         // In the coordinates t of the cell its centre is at 0 and its faces are
         // at -1 and 1. The simplex follows from the order of the |t_d|: with
         // the largest one first, the point lies in the pyramid of that face,
@@ -169,7 +205,7 @@ namespace Debond
         // |t_d|, beginning with 1 - |t_d| for the centre; what remains is
         // divided between the two ends of the edge by the last coordinate.
         dealii::Tensor<1, dim>        t;
-        Place                         at;
+        Number                        at;
         std::array<unsigned int, dim> by_size;
         for (unsigned int d = 0; d < dim; ++d)
           {
@@ -211,7 +247,7 @@ namespace Debond
 
     private:
       unsigned int
-      number(const Place &place) const
+      number(const Number &place) const
       {
         unsigned int k = 0;
         for (unsigned int d = dim; d-- > 0;)
@@ -219,9 +255,9 @@ namespace Debond
         return numbers[k];
       }
 
-      const BoxParameters          box;
-      const dealii::Tensor<2, dim> rotation;
-      std::vector<unsigned int>    numbers; ///< where there is a vertex
+      const BoxParameters       box;
+      const Place<dim>          place_of_box;
+      std::vector<unsigned int> numbers; ///< where there is a vertex
     };
   } // namespace
 

@@ -80,6 +80,13 @@ namespace Debond
     table.add("initial_gap", boundary.nodes, [](const auto &node) {
       return node.gap;
     });
+    // Without a load path there is no list, and no column.
+    if (!verification.breaks.empty())
+      {
+        table.add("broken_at", verification.breaks, &BondBreak::factor);
+        if (!verification.slips.empty())
+          table.add("broken_mode", verification.breaks, &BondBreak::mode);
+      }
     table.write(file_name);
   }
 

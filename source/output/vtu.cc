@@ -288,6 +288,13 @@ namespace Debond
           for (const ContactScalar &scalar : shear_scalars)
             values.push_back(scalar.value(state, measure));
         }
+      if (!verification.breaks.empty())
+        {
+          const BondBreak bond =
+            face.is_held(k) ? BondBreak{} : verification.breaks[face.node(k)];
+          values.push_back(bond.factor.value_or(nan));
+          values.push_back(bond.mode.value_or(nan));
+        }
       return values;
     }
 
@@ -462,6 +469,9 @@ namespace Debond
         for (const ContactScalar &scalar : shear_scalars)
           grid.at_points.push_back({scalar.name});
       }
+    if (!verification.breaks.empty())
+      for (const std::string name : {"broken_at", "broken_mode"})
+        grid.at_points.push_back({name});
     grid.in_cells = {{"bond_state"}};
     for (const auto &[name, unused] : more)
       grid.in_cells.push_back({name});

@@ -331,12 +331,13 @@ namespace Debond
         "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
 
     dealii::Timer timer;
-    result.verification = verify(scene.problem(),
+    result.verification        = verify(scene.problem(),
                                  result.bonds(),
                                  result.solution.u,
                                  result.solution.load_factor,
                                  scene.least_force());
-    const auto values   = [&](const Probes<dim> &probes) {
+    result.verification.breaks = result.path.breaks;
+    const auto values          = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solution.u,
                            result.solution.load_factor);

@@ -70,6 +70,16 @@ namespace Debond
 
 
     /// Writes to the file or reads from it, by the type of the archive.
+    template <class Archive>
+    void
+    exchange(Archive &archive, BondBreak &bond)
+    {
+      exchange(archive, bond.factor);
+      exchange(archive, bond.mode);
+    }
+
+
+
     template <class Archive, int dim>
     void
     exchange(Archive &archive, LoadPathState<dim> &state)
@@ -147,6 +157,7 @@ namespace Debond
       exchange(archive, path.steps);
       exchange(archive, path.points);
       exchange(archive, path.memory);
+      exchange(archive, path.breaks);
       // A peak has a step that may be none of the path's.
       bool     has_peak = path.peak.has_value();
       archive &has_peak;

@@ -67,6 +67,8 @@ namespace
     BoxParameters box;
     box.cells    = {{10 * n, n, n}};
     box.rotation = rotation;
+    if (rotation != 0.)
+      box.origin = {{-0.05, 0.3, 0.1}};
     return box;
   }
 

@@ -59,12 +59,24 @@ namespace Debond
 
 
 
+  /// When the bonds of a node broke on a load path; no numbers if they hold.
+  struct BondBreak
+  {
+    std::optional<double> factor; ///< of the first step after which they do not
+    std::optional<double> mode;   ///< ContactNodeState::mode_mixity there
+  };
+
+
+
   /// A solution checked against the problem from A u - f alone.
   template <int dim>
   struct Verification
   {
     /// The states in the order of ContactBoundary::nodes.
     std::vector<ContactNodeState> nodes;
+
+    /// Of each node, of a state of a load path; verify() leaves it empty.
+    std::vector<BondBreak> breaks;
 
     /// That of the prescribed displacements.
     double displacement_factor = 1.;

@@ -78,6 +78,9 @@ namespace Debond
                        const double delta,
                        const double reached = 0.) const;
 
+    /// The damage() from which on bonds of a traction that decays are broken.
+    static constexpr double broken_damage = 0.99;
+
     /// The part of their stiffness that bonds which have been at @p reached
     /// have lost for good, of their traction where that is no spring at first.
     double

@@ -70,11 +70,11 @@ namespace Debond
     bool arc = false;
   };
 
-  /// Reads numbers and ranges FIRST:STEP:LAST, separated by commas, such as
-  /// "0:0.05:1.2, 1.2:-0.05:0". The values of a range are rounded to 12
-  /// decimal digits, so that loading and unloading meet the same factors.
-  /// Throws std::invalid_argument that says what is wrong with which part of
-  /// the list.
+  /// Reads numbers, ranges FIRST:STEP:LAST and repetitions NUMBER x COUNT,
+  /// separated by commas, such as "0:0.05:1.2, 1.2 x 3, 1.2:-0.05:0". The
+  /// values of a range are rounded to 12 decimal digits, so that loading and
+  /// unloading meet the same factors. Throws std::invalid_argument that says
+  /// what is wrong with which part of the list.
   std::vector<double>
   parse_load_factors(const std::string &text);
 

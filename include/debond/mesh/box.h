@@ -7,9 +7,11 @@
 
 namespace Debond
 {
-  /// The body (0, L_1) x (0, L_2) [x (0, L_3)], turned about the origin.
+  /// The body (0, L_1) x (0, L_2) [x (0, L_3)], moved to begin at `origin` and
+  /// then turned about zero.
   struct BoxParameters
   {
+    std::array<double, 3>       origin   = {{0., 0., 0.}};
     std::array<double, 3>       lengths  = {{0.4, 0.04, 0.04}};
     std::array<unsigned int, 3> cells    = {{40, 4, 4}};
     double                      rotation = 0.; ///< degrees, in the x-y plane

@@ -57,6 +57,9 @@ namespace Debond
     DofVector  u;
     BondMemory memory;
 
+    /// Of each contact node, so far.
+    std::vector<BondBreak> breaks;
+
     /// There is one if supports move and the loads stay, unless the scene does
     /// not want it (Load path/Resolve).
     std::optional<LoadPathPeak<dim>> peak;

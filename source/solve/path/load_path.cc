@@ -235,10 +235,11 @@ namespace Debond
       void
       repeat_last_step(const LoadPathObserver<dim> &observer)
       {
-        const VerifiedState<dim> last(scene,
-                                      bonds_of(this->last()),
-                                      steps.back().factors(),
-                                      progress.u);
+        VerifiedState<dim> last(scene,
+                                bonds_of(this->last()),
+                                steps.back().factors(),
+                                progress.u);
+        last.verification.breaks = progress.breaks;
         tell(last.verification, observer);
       }
 
@@ -286,11 +287,11 @@ namespace Debond
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const Stage                  stage("load path, step " +
+        const Stage            stage("load path, step " +
                           std::to_string(steps.size() + 1) + ", " +
                           parameters.name(factors));
-        const PathEnd<dim>           begun   = last();
-        const std::optional<Reached> reached = step_to(factors, begun, result);
+        const PathEnd<dim>     begun   = last();
+        std::optional<Reached> reached = step_to(factors, begun, result);
         // A signal within a step discards it, and the state is that of the step
         // before. Of the first step there is nothing but what was reached.
         if ((!reached && !result.comes_off_at) ||
@@ -311,6 +312,10 @@ namespace Debond
         kinds.push_back(reached->end.kind);
         progress.u      = reached->end.u;
         progress.memory = reached->end.memory;
+        note_breaks(parameters.varying(factors),
+                    reached->verification.nodes,
+                    progress.breaks);
+        reached->verification.breaks = progress.breaks;
         tell(reached->verification, observer);
         return true;
       }

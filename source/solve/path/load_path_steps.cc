@@ -67,6 +67,22 @@ namespace Debond
 
 
 
+  void
+  note_breaks(const double                         factor,
+              const std::vector<ContactNodeState> &nodes,
+              std::vector<BondBreak>              &breaks)
+  {
+    breaks.resize(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (const ContactNodeState &node = nodes[i];
+          std::max(node.damage, node.shear_damage) < AdhesiveLaw::broken_damage)
+        breaks[i] = {};
+      else if (!breaks[i].factor)
+        breaks[i] = {factor, node.mode_mixity};
+  }
+
+
+
   template <int dim>
   void
   refine_state(const Scene<dim>            &scene,

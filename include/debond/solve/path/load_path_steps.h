@@ -80,6 +80,14 @@ namespace Debond
           const LoadFactors         factors);
 
 
+  /// Enters in @p breaks, as many as @p nodes or none before the first step,
+  /// which bonds have broken in a step to @p factor. Broken are those that have
+  /// lost 0.99 of their stiffness; what has healed has not.
+  void
+  note_breaks(const double                         factor,
+              const std::vector<ContactNodeState> &nodes,
+              std::vector<BondBreak>              &breaks);
+
   /// Refines a state of a path if needed, with one note for all of them.
   template <int dim>
   void
