@@ -85,7 +85,7 @@ class Run:
     """A directory with results; of a load path those of a step, or the last one."""
 
     def __init__(self, directory, step, units):
-        self.directory, self.step, self.title = directory, step, ""
+        self.directory, self.title = directory, ""
         self.summary = read_summary(directory)
         if not self.summary:
             raise BadInput(f"{directory} has no summary.json of a run")
@@ -95,6 +95,14 @@ class Run:
         self.factor = max(("factor", "displacement_factor"), key=lambda name: (
             numpy.ptp(path.get(name, 0.)) > 0, numpy.any(path.get(name, 1.) != 1)))
         n = len(path.get("step", []))
+        if step == "peak":
+            peak = self.summary.get("load_path", {}).get("peak")
+            if not peak:
+                raise BadInput(f"{directory} has no largest force of a load path")
+            # That may be inside of a step: the nearest one of the table.
+            step = 1 + int(numpy.argmin(abs(
+                path["displacement_factor"] - peak["displacement_factor"])))
+        self.step = step
         if step is not None and not 1 <= step <= n:
             raise BadInput(f"{directory} has no step {step}, " + (
                 f"but 1 to {n}" if n else "as it is no load path"))
@@ -611,8 +619,9 @@ def main():
                         "four pictures")
     parser.add_argument("--together", metavar="FILE", help="draws the curves of all "
                         "directories in one pair of axes, as FILE.png and FILE.svg")
-    parser.add_argument("--step", type=int, help="draws the body and "
-                        "the contact boundary in this step of a load path")
+    parser.add_argument("--step", type=lambda text: text if text == "peak" else int(text),
+                        help="draws the body and the contact boundary in this step of "
+                        "a load path, a number, or in that next to the largest force: peak")
     parser.add_argument("--view", type=angles, metavar="AZIMUTH,ELEVATION",
                         help="in degrees, where a body in 3D is seen from, as in "
                         "--view=-65,25; the elevation is over the side that is "

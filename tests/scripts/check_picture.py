@@ -89,6 +89,7 @@ for options, words in (
         (["--path", "contact_reaction over factor"], "but contact_reaction_"),
         (["--path", "status over factor"], "status of load_path.csv has no numbers"),
         (["--path", "J over factor", "--step", "2"], "not for a --step"),
+        (["--step", "peak"], "no largest force"),
         (["--step", "99"], "no step 99, but 1 to"), (["--step", "0"], "no step 0, but 1 to"),
         (["--units", "mm"], "LENGTH, STRESS")):
     assert words in refusal("path", *options), refusal("path", *options)
