@@ -275,6 +275,76 @@ def beam_force(opening):
     return math.sqrt(2. * (0.28 * 20.)**1.5 * math.sqrt(EI) / (3. * opening))
 
 
+def arms(E1, E2, G12, h, a, G):
+    """Force on the arms of a double cantilever beam for a unit of width when the crack
+    starts: beams that are longer by Williams' chi h."""
+    q = 1.18 * math.sqrt(E1 * E2) / G12
+    chi = math.sqrt(E1 / (11. * G12) * (3. - 2. * (q / (1. + q))**2))
+    return math.sqrt(G * E1 * h**3 / 12.) / (a + chi * h)
+
+
+def cantilevers(run, constants, width, stated):
+    """The largest force beside what others state, (word, force), and beams."""
+    results = run("published/double-cantilever",
+                  {f"Constants/{name}": value for name, value in constants.items()})
+    force = width * results.summary["load_path"]["peak"]["unit_displacement_work"]
+    for word, value in stated:
+        yield f"largest force, {word}, N", value, force
+    yield "largest force, beams longer by chi h, N", width * arms(
+        **{name: constants[name] for name in ("E1", "E2", "G12", "h", "a", "G")}), force
+
+
+@problem("double cantilever beam, strengths", "Alfano, Crisfield, IJNME 50 (2001)",
+         0.02, 0.04, 0.015, 0.025, 0.01)
+def two_strengths(run):
+    constants = {"L": 100, "a": 30, "h": 1.5, "E1": 135300, "E2": 9000, "nu12": 0.24,
+                 "G12": 5200, "G23": 3000, "G": 0.28}
+    *found, beams = cantilevers(run, {**constants, "strength": 57, "u": 1.5, "cell": 0.1}, 20.,
+                                [("strong bonds, 57 MPa (figure)", 61.5),
+                                 ("strong bonds (panels)", 64.6)])
+    yield from found
+    yield beams
+    yield from list(cantilevers(
+        run, {**constants, "strength": 1.7, "u": 2, "cell": 0.5}, 20.,
+        [("weak bonds, 1.7 MPa (figure)", 49.5), ("weak bonds (panels)", 50.9)]))[:-1]
+
+
+@problem("double cantilever beam, T300/977-2",
+         "Turon, Dávila, Camanho, Costa, Eng. Fract. Mech. 74 (2007)", 0.02, 0.11, 0.03, 0.01)
+def turon(run):
+    return cantilevers(run, {"L": 150, "a": 55, "h": 1.98, "E1": 150000, "E2": 11000,
+                             "G12": 6000, "G": 0.352}, 20.,
+                       [("test", 62.), ("their elements", 57.), ("panels", 64.1)])
+
+
+@problem("double cantilever beam, AS4/PEEK",
+         "Camanho, Dávila, de Moura, J. Compos. Mater. 37 (2003)", 0.08, 0.13, 0.03, 0.02)
+def peek(run):
+    return cantilevers(run, {
+        "L": 102, "a": 32.9, "h": 1.56, "E1": 122700, "E2": 10100, "G12": 5500, "G": 0.969,
+        "strength": 80, "cell": 0.1}, 25.4,
+        [("test", 147.1), ("their elements", 155.3), ("panels", 139.9)])
+
+
+@problem("strip on concrete, single shear",
+         "Yuan, Teng, Seracino, Wu, Yao, Eng. Struct. 26 (2004)", 1e-3)
+def strip_on_concrete(run):
+    Et, shear, s1, s2 = 256000. * 0.165, 7.2, 0.034, 0.16
+    rise, fall = math.sqrt(shear / (s1 * Et)), math.sqrt(shear / ((s2 - s1) * Et))
+    low, high = 0., 40.
+    while high - low > 1e-9:  # the length that softens
+        a = 0.5 * (low + high)
+        if math.tanh(rise * (40. - a)) > fall / rise * math.tan(fall * a):
+            low = a
+        else:
+            high = a
+    for L, stated, word in (
+            (100, math.sqrt(Et * shear * s2), "long bond, sqrt(2 E t G)"),
+            (40, shear / fall * s2 / (s2 - s1) * math.sin(fall * low), "bond of 40 mm")):
+        peak = run("published/strip-on-concrete", {"Constants/L": L}).summary["load_path"]["peak"]
+        yield f"largest force, {word}, N/mm", stated, peak["unit_displacement_work"]
+
+
 @problem("end-loaded split", "beams with a sheared layer", 1e-3)
 def end_loaded_split(run):
     E, h, L, a, k = 70000., 2., 160., 60., 100.
