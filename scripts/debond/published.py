@@ -275,6 +275,94 @@ def beam_force(opening):
     return math.sqrt(2. * (0.28 * 20.)**1.5 * math.sqrt(EI) / (3. * opening))
 
 
+def williams(E1, E2, G12, h):
+    """chi h, by which a crack is longer to beams that are not sheared."""
+    q = 1.18 * math.sqrt(E1 * E2) / G12
+    return h * math.sqrt(E1 / (11. * G12) * (3. - 2. * (q / (1. + q))**2))
+
+
+def largest_force(run, scene, constants):
+    """Of a unit of width, on a path of displacements."""
+    results = run(f"published/{scene}",
+                  {f"Constants/{name}": value for name, value in constants.items()})
+    return results.summary["load_path"]["peak"]["unit_displacement_work"]
+
+
+def cantilever(run, width, constants, *stated):
+    """The largest force beside what others state, (word, force), and beside beams."""
+    force = width * largest_force(run, "double-cantilever", constants)
+    E1, E2, G12, h, a, G = (constants[name] for name in ("E1", "E2", "G12", "h", "a", "G"))
+    beams = width * math.sqrt(G * E1 * h**3 / 12.) / (a + williams(E1, E2, G12, h))
+    for word, value in (*stated, ("beams longer by chi h", beams)):
+        yield f"largest force, {word}, N", value, force
+
+
+@problem("double cantilever beam, two strengths", "Alfano, Crisfield, IJNME 50 (2001)",
+         0.02, 0.04, 0.015, 0.03, 0.01)
+def two_strengths(run):
+    laminate = {"L": 100, "a": 30, "h": 1.5, "E1": 135300, "E2": 9000, "nu12": 0.24,
+                "G12": 5200, "G23": 3000, "G": 0.28}
+    yield from cantilever(run, 20., {**laminate, "strength": 57, "u": 1.5, "cell": 0.1},
+                          ("57 MPa (their figure)", 61.5), ("57 MPa (panels)", 64.6))
+    weak = [*cantilever(run, 20., {**laminate, "strength": 1.7, "u": 2, "cell": 0.5},
+                        ("weak, 1.7 MPa (their figure)", 49.5), ("weak, 1.7 MPa (panels)", 50.9))]
+    yield from weak[:-1]  # Beams with a crack have no strength.
+
+
+@problem("double cantilever beam, T300/977-2",
+         "Turon, Dávila, Camanho, Costa, Eng. Fract. Mech. 74 (2007)", 0.02, 0.11, 0.03, 0.01)
+def t300(run):
+    return cantilever(run, 20., {"a": 55, "h": 1.98, "E1": 150000, "E2": 11000, "G12": 6000,
+                                 "G": 0.352},
+                      ("test (their figure)", 62.), ("elements (their figure)", 57.),
+                      ("panels", 64.1))
+
+
+@problem("double cantilever beam, AS4/PEEK",
+         "Camanho, Dávila, de Moura, J. Compos. Mater. 37 (2003)", 0.08, 0.13, 0.03, 0.02)
+def peek(run):
+    return cantilever(run, 25.4, {"L": 102, "a": 32.9, "h": 1.56, "E1": 122700, "E2": 10100,
+                                  "G12": 5500, "G": 0.969, "strength": 80, "cell": 0.1},
+                      ("test", 147.1), ("elements of 1 mm", 155.3), ("panels", 139.9))
+
+
+@problem("mixed-mode bending, AS4/PEEK", "Camanho, Dávila, NASA/TM-2002-211737",
+         0.18, 0.01, 0.09, 0.015, 0.12, 0.04)
+def mixed_mode_peek(run):
+    E1, L, h = 122700., 51., 1.56
+    longer = williams(E1, 10100., 5500., h)
+    for mix, a, u, test in (0.2, 33.7, 10.2, 108.09), (0.5, 34.1, 5.7, 275.35), (
+            0.8, 31.4, 5.3, 518.66):
+        force = 25.4 * largest_force(run, "mixed-mode-bending", {"mix": mix, "a": a, "u": u})
+        r = math.sqrt(0.75 * (1. - mix) / mix)
+        c = L * (r + 1.) / (3. - r)
+        one = 12. * (3. * c - L)**2 * (a + longer)**2
+        two = 9. * (c + L)**2 * (a + 0.42 * longer)**2
+        G = 0.969 + 0.75 * (two / (one + two))**2.284
+        yield f"largest force, {100. * mix:g} % of mode II, test, N", test, force
+        yield (f"largest force, {100. * mix:g} % of mode II, beams longer by chi h, N",
+               25.4 * math.sqrt(16. * h**3 * L**2 * E1 * G / (one + two)), force)
+
+
+@problem("strip on concrete, single shear",
+         "Yuan, Teng, Seracino, Wu, Yao, Eng. Struct. 26 (2004)", 1e-3)
+def strip_on_concrete(run):
+    Et, shear, s1, s2 = 256000. * 0.165, 7.2, 0.034, 0.16
+    rise, fall = math.sqrt(shear / (s1 * Et)), math.sqrt(shear / ((s2 - s1) * Et))
+    low, high = 0., 40.
+    while high - low > 1e-9:  # the length that softens
+        a = 0.5 * (low + high)
+        if math.tanh(rise * (40. - a)) > fall / rise * math.tan(fall * a):
+            low = a
+        else:
+            high = a
+    for L, stated, word in (
+            (100, math.sqrt(Et * shear * s2), "long bond, sqrt(2 E t G)"),
+            (40, shear / fall * s2 / (s2 - s1) * math.sin(fall * low), "bond of 40 mm")):
+        yield f"largest force, {word}, N/mm", stated, largest_force(
+            run, "strip-on-concrete", {"L": L})
+
+
 @problem("end-loaded split", "beams with a sheared layer", 1e-3)
 def end_loaded_split(run):
     E, h, L, a, k = 70000., 2., 160., 60., 100.
