@@ -40,8 +40,6 @@ namespace Debond
         ratio /= law.second_derivative(0.);
       if (read_number(problem.shear.energy.everywhere, energy))
         energy /= law.pieces().largest_value();
-      if (!problem.shear.strength.everywhere.empty())
-        return ", strength " + problem.shear.strength.everywhere;
       return words(", strength ",
                    law.bond_strength() * std::sqrt(ratio * energy));
     }
@@ -161,6 +159,8 @@ namespace Debond
                     problem.shear.stiffness.everywhere.empty() ?
                       "stiffness as along the normal" :
                       "stiffness " + problem.shear.stiffness.everywhere,
+                    !problem.shear.strength.everywhere.empty() ?
+                      ", strength " + problem.shear.strength.everywhere :
                     problem.law.has_field() || problem.law.pieces.size() == 1 ?
                       "" :
                       strength_in_shear(problem),
