@@ -497,31 +497,6 @@ namespace Debond
 
 
 
-  template <int dim>
-  double
-  AdhesionIntegral<dim>::first_change_to(const AdhesionIntegral &next,
-                                         const VectorView       &s,
-                                         const VectorView       &next_s) const
-  {
-    // The way includes that of prescribed displacements, from the offsets of
-    // these points to those of the next step.
-    double      first      = 1.;
-    const auto *next_point = next.points().list().data();
-    for_each_point(s, [&](const auto &point, double scaled, double reached) {
-      // Both have the same points, in the same order.
-      const auto     &to  = *next_point++;
-      const Jump<dim> way = {to.normal_displacement(next_s) -
-                               point.normal_displacement(s),
-                             to.jump(next_s).tangential -
-                               point.jump(s).tangential};
-      first =
-        std::min(first, way_to_end(point, point.jump(s), scaled, reached, way));
-    });
-    return first;
-  }
-
-
-
   namespace
   {
     /// Adds the forces that bonds in shear may have at jumps that are by no

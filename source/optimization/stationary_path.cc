@@ -333,13 +333,9 @@ namespace Debond
                                                   distance(i, false);
         return Event::end;
       }
-    bool has_bonds = false;
     for (const Change &one : changes)
-      {
-        change(one);
-        has_bonds = has_bonds || (one.from > 0 && segments[one.i] > 0);
-      }
-    return has_bonds ? Event::bond : Event::contact;
+      change(one);
+    return Event::change;
   }
 
 

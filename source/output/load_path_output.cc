@@ -95,8 +95,7 @@ namespace Debond
                     const std::string                    &file_name)
     {
       // The factor is that of the loads. A cell is empty if the number is not
-      // known, such as the factor of a change if nothing changed. The columns
-      // of the global branch are there in any case.
+      // known. The columns of the global branch are there in any case.
       CsvTable table;
       for (const LoadPathStep<dim> &step : steps)
         {
@@ -107,7 +106,6 @@ namespace Debond
           row.add("status", step.status);
           row.add("", step.state);
           row.add("iterations", step.iterations);
-          row.add("change_factor", step.change_factor);
           // Without a global branch its columns are those of the step.
           const std::size_t n = row.cells.size();
           row.add("global_", step.global ? *step.global : step.state);

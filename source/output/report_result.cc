@@ -449,10 +449,9 @@ namespace Debond
                   Record                          &record)
     {
       // The key is null if the broken part never grew or shrank, and a step
-      // otherwise: the factors with which the step was solved, the factor on
-      // the way to it at which the first bond changed, and the broken part
-      // before and after. Without bonds what is open counts as broken, which
-      // the words of the log take into account.
+      // otherwise: the factors with which the step was solved, and the broken
+      // part before and after. Without bonds what is open counts as broken,
+      // which the words of the log take into account.
       const std::string pointer = "/load_path/" + name;
       if (!change)
         {
@@ -463,7 +462,6 @@ namespace Debond
                  {{"step", change->step},
                   {"factor", change->factor},
                   {"displacement_factor", change->displacement_factor},
-                  {"change_factor", Record::json_of(change->change_factor)},
                   {"broken_before", change->broken_before},
                   {"broken_after", change->broken_after}});
       record.line(label,
@@ -474,12 +472,7 @@ namespace Debond
                   has_bonds ? ", broken part " : ", open part ",
                   change->broken_before,
                   " to ",
-                  change->broken_after,
-                  change->change_factor ? words(", from ",
-                                                std::setprecision(10),
-                                                *change->change_factor,
-                                                " on") :
-                                          "");
+                  change->broken_after);
     }
 
 

@@ -99,7 +99,6 @@ namespace Debond
     {
       archive &step.step &step.factor &step.displacement_factor &step
         .status &step.iterations &step.message;
-      exchange(archive, step.change_factor);
       exchange(archive, step.state);
     }
 

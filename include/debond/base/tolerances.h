@@ -192,9 +192,8 @@ namespace Debond
     /// Speeds along a path to the fastest one, which are rounding of that.
     constexpr double no_speed = 1e-12;
 
-    /// Breakpoints of a path that coincide, to the interval, and an end of it
-    /// that one at the end still belongs to.
-    constexpr double same_breakpoint = 1e-11, end_of_path = 1e-10;
+    /// Breakpoints of a path that coincide, to the interval.
+    constexpr double same_breakpoint = 1e-11;
 
     /// Steps of a line search that are none.
     constexpr double no_step = 1e-12;

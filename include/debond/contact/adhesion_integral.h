@@ -260,13 +260,6 @@ namespace Debond
                  const VectorView &ds,
                  const double      limit) const override;
 
-    /// The same on the way to @p next_s with the prescribed displacements of
-    /// @p next, as a part of that way.
-    double
-    first_change_to(const AdhesionIntegral &next,
-                    const VectorView       &s,
-                    const VectorView       &next_s) const;
-
     /// For each unknown the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
     /// the Clarke interval of Phi.

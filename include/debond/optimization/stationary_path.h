@@ -37,9 +37,9 @@ namespace Debond
   public:
     struct Bond
     {
-      double       energy; ///< w_i
-      double       length; ///< l_i
-      unsigned int least;  ///< pieces of f before this one do not return
+      double       energy;    ///< w_i
+      double       length;    ///< l_i
+      unsigned int least = 0; ///< pieces of f before this one do not return
     };
 
     /// The functional whose stationary points are followed, with g(t) = load +
@@ -59,8 +59,7 @@ namespace Debond
 
     enum class Event
     {
-      contact,      ///< some s_i came to zero or left it
-      bond,         ///< some s_i came to a kink or left it
+      change,       ///< some s_i came to its next segment
       end,          ///< of the interval
       no_stiffness, ///< the curve goes to infinity
       degenerate    ///< the curve branches, or rounding hides where it goes on

@@ -5,7 +5,6 @@
 #include <debond/solve/minimum/contact_solver.h>
 #include <debond/solve/minimum/refinement.h>
 #include <debond/solve/minimum/solve.h>
-#include <debond/solve/path/bond_change.h>
 #include <debond/solve/path/branch_of_path.h>
 #include <debond/solve/path/largest_force.h>
 #include <debond/solve/path/load_path.h>
@@ -382,9 +381,8 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(begun.memory);
-        const Solution minimum  = minimise(factors, begun, bonds);
-        const bool     is_first = begun.step.step == 0;
-        if (minimum.status == SolverStatus::interrupted && !is_first)
+        const Solution minimum = minimise(factors, begun, bonds);
+        if (minimum.status == SolverStatus::interrupted && begun.step.step > 0)
           return {};
         result.add(minimum);
         result.message.clear();
@@ -394,17 +392,6 @@ namespace Debond
             result.message      = minimum.message;
             return {};
           }
-        // The first change on the way from the last step is one of the bonds as
-        // they were before it. It takes S, and is not known without it.
-        std::optional<double>     change_factor;
-        const Condensation *const condensed = solver->condensed();
-        if (!is_first && condensed != nullptr)
-          change_factor =
-            first_bond_change<dim>({scene, *condensed},
-                                   bonds,
-                                   {begun.step.factors(), begun.point},
-                                   factors,
-                                   interruption);
         // The order matters: the displacement is refined before bonds break for
         // good by it, and the verification is of the bonds as they are then.
         PathEnd<dim> end;
@@ -417,14 +404,14 @@ namespace Debond
         end.memory = bonds.memory();
 
         const VerifiedState<dim> state(scene, bonds, factors, end.u);
-        end.step               = step_of(state, begun.step.step + 1, factors);
-        end.step.change_factor = change_factor;
-        end.step.iterations    = minimum.iterations;
-        end.step.status        = to_string(minimum.status);
+        end.step            = step_of(state, begun.step.step + 1, factors);
+        end.step.iterations = minimum.iterations;
+        end.step.status     = to_string(minimum.status);
         // The kind of the minimum follows from the pieces of the law alone,
         // unless bonds soften: then the second-order condition needs S, and g
         // at this factor.
         std::optional<Condensation> at_step;
+        const Condensation *const   condensed = solver->condensed();
         if (condensed != nullptr && bonds.softens())
           at_step = CondensedScene<dim>{scene, *condensed}.at(factors);
         end.kind =

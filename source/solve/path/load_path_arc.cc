@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
+#include <debond/optimization/stationary_path.h>
 #include <debond/solve/path/load_path_arc.h>
 
 namespace Debond
@@ -76,6 +77,36 @@ namespace Debond
       const bool                 is_of_loads;
       const std::vector<double> &values;
     };
+
+
+
+    /// The stationary points between the factors @p first, where t = 0, and
+    /// @p last, where t = @p length.
+    template <int dim>
+    StationaryPath::Problem
+    problem_between(const CondensedScene<dim> &scene,
+                    const LoadFactors          first,
+                    const LoadFactors          last,
+                    const double               length)
+    {
+      // With nodal bonds each s_i has the law w_i f(s_i / l_i), and g is affine
+      // in the factor, as StationaryPath needs it: its slope is the difference
+      // of g over the length of the interval of t.
+      const Eigen::VectorXd             g = scene.load(first);
+      std::vector<StationaryPath::Bond> bonds;
+      const auto &nodes = scene.scene.contact_boundary().nodes;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          const BondScale scale = scene.scene.adhesion().points().bonds_at(i);
+          bonds.push_back({nodes[i].measure * scale.energy, scale.length});
+        }
+      return {scene.condensed.schur_complement(),
+              g,
+              (scene.load(last) - g) / length,
+              scene.scene.law().pieces(),
+              bonds,
+              scene.scene.parameters().load_path.bonds_heal};
+    }
   } // namespace
 
 
@@ -110,10 +141,10 @@ namespace Debond
     const double                    sign     = length > 0. ? 1. : -1.;
     const std::pair<double, double> interval = varied.interval(sign);
     BondMemory                      memory;
-    StationaryPath                  path(scene.between(varied.at(first),
-                                      varied.at(varied.other()),
-                                      std::abs(length),
-                                      scene.scene.adhesion()),
+    StationaryPath                  path(problem_between(scene,
+                                        varied.at(first),
+                                        varied.at(varied.other()),
+                                        std::abs(length)),
                         s,
                         sign * first);
     const auto                      add = [&](const bool is_stable) {
@@ -150,7 +181,7 @@ namespace Debond
     };
 
     using Event = StationaryPath::Event;
-    Event last  = Event::contact;
+    Event last  = Event::change;
     // The limit of breakpoints is a few for each node and each piece of the
     // law, as nodes touch and go through the pieces there and back. More of
     // them mean that rounding leads the path in a circle.

@@ -121,7 +121,6 @@ namespace Debond
         const BondChange change = {step.step,
                                    step.factor,
                                    step.displacement_factor,
-                                   step.change_factor,
                                    broken,
                                    step.state.broken_part};
         const double     growth = change.broken_after - change.broken_before;

@@ -3,7 +3,6 @@
 #define debond_solve_minimum_condensed_scene_h
 
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/optimization/stationary_path.h>
 #include <debond/solve/scene/scene.h>
 
 namespace Debond
@@ -33,15 +32,6 @@ namespace Debond
     {
       return condensed.with_load(scene.problem().load(factors)).load();
     }
-
-    /// Its stationary points between the factors @p first, where t = 0, and
-    /// @p last, where t = @p length, with nodal bonds that are as @p integral
-    /// has them.
-    StationaryPath::Problem
-    between(const LoadFactors            first,
-            const LoadFactors            last,
-            const double                 length,
-            const AdhesionIntegral<dim> &integral) const;
   };
 } // namespace Debond
 

@@ -20,13 +20,6 @@ namespace Debond
     LoadPathState<dim> state;
     unsigned int       iterations; ///< of majorise-minimise
 
-    /// The factor at which, on the way from the last one, the first bond went
-    /// over to another piece of the law, if one did, see first_bond_change().
-    /// It is the factor of prescribed displacements if that of the loads stayed
-    /// the same. None is known for the first step, without S, and if bonds
-    /// soften or, between nodes, if vertices are held.
-    std::optional<double> change_factor;
-
     /// The global branch at this factor, if it was computed.
     std::optional<LoadPathState<dim>> global;
     std::optional<double>             relative_gap; ///< of its proof
@@ -103,12 +96,11 @@ namespace Debond
   /// A step at which the broken part changed.
   struct BondChange
   {
-    unsigned int          step;
-    double                factor;
-    double                displacement_factor;
-    std::optional<double> change_factor; ///< see LoadPathStep
-    double                broken_before;
-    double                broken_after;
+    unsigned int step;
+    double       factor;
+    double       displacement_factor;
+    double       broken_before;
+    double       broken_after;
   };
 
 
