@@ -87,10 +87,12 @@ namespace Debond
       bonds.threshold ? value(bonds.threshold, M, "Bond threshold") / M : 1.;
     const double scale  = a_here / a;
     BondScale    result = {scale * length * length, length};
-    const auto   refuse = [&](const std::string &name, const double least) {
+    const auto   refuse = [&](const std::string &name,
+                            const std::string &boundary,
+                            const double       least) {
       throw BondFieldError(
         name,
-        bonds.boundary,
+        boundary,
         words("it has to exceed strength^2 / (2 stiffness) = ",
               least,
               " at ",
@@ -101,7 +103,7 @@ namespace Debond
       {
         const double whole = value(bonds.energy, 0., "Fracture energy");
         if (!(whole > (1. + Tolerance::brittle) * result.energy * stored))
-          refuse("Fracture energy", result.energy * stored);
+          refuse("Fracture energy", bonds.boundary, result.energy * stored);
         result.tail = (whole / result.energy - stored) / taken;
       }
     const auto in_shear = shear.boundaries.find(id);
@@ -127,16 +129,20 @@ namespace Debond
       return result;
     result.strength_ratio = *numbers.strength * of_shear * result.length /
                             (law.bond_strength() * result.energy);
-    // The formulas have no extremes between modes that a few modes would miss
-    // by much.
-    constexpr unsigned int n_modes = 32;
-    for (unsigned int k = 0; k <= n_modes; ++k)
+    // Without stiffness in shear there is only one mode. The others are tried
+    // one by one, with that at which both tractions come to their strengths:
+    // there the strength has a corner.
+    constexpr unsigned int n_modes = 128;
+    const double           corner =
+      1. /
+      (1. + result.shear / (result.strength_ratio * result.strength_ratio));
+    for (unsigned int k = 0; k <= n_modes + 1 && result.shear > 0.; ++k)
       {
-        const double m     = double(k) / n_modes;
+        const double m     = k > n_modes ? corner : double(k) / n_modes;
         const double n     = strength_at(result, m);
         const double least = n * n * result.energy * stored;
         if (!(energy_at(result, m) * whole > (1. + Tolerance::brittle) * least))
-          refuse("Shear fracture energy", least);
+          refuse("Shear fracture energy", numbers.boundary, least);
       }
     return result;
   }
@@ -190,9 +196,13 @@ namespace Debond
     BondScale result = bonds;
     result.energy *= n * n;
     result.length *= n;
+    // Between the modes that at() has tried it may be a little short of what
+    // bonds have stored.
     if (bonds.strength_ratio > 0.)
       result.tail =
-        (energy * (stored + bonds.tail * taken) / (n * n) - stored) / taken;
+        std::max(Tolerance::brittle,
+                 (energy * (stored + bonds.tail * taken) / (n * n) - stored) /
+                   taken);
     return result;
   }
 

@@ -80,19 +80,23 @@ namespace Debond
     if (field == nullptr)
       return;
 
-    // The bonds of the faces around a vertex, each as often as its measure.
+    // What bonds take on the first piece and beyond, if they soften.
+    const bool   softens = law.softens();
+    const double stored  = softens ? law.value(law.pieces()[0].lower) : 1.;
+    const double taken   = softens ? law.pieces().largest_value() - stored : 0.;
+
+    // The bonds of the faces around a vertex, each as often as its measure:
+    // stiffness, strength, and energy, and what belongs to each of them.
     struct Sum
     {
       BondScale first;
-      bool      is_mixed  = false;
-      double    measure   = 0.;
-      double    stiffness = 0.; ///< times measure, as is the energy
-      double    energy    = 0.;
-      double    shear = 0., shear_energy = 0.; ///< likewise, of stiffness too
-      double tail = 0., energy_ratio = 0., strength_ratio = 0.; ///< of energy
+      bool      is_mixed = false;
+      double    measure = 0., stiffness = 0., strength = 0., energy = 0.;
+      double    whole = 0., shear = 0., shear_energy = 0.;
+      double    energy_ratio = 0., strength_ratio = 0.;
 
       void
-      add(const BondScale &bonds, const double more)
+      add(const BondScale &bonds, const double more, const double per_energy)
       {
         if (measure == 0.)
           first = bonds;
@@ -102,40 +106,49 @@ namespace Debond
                    bonds.tail != first.tail ||
                    bonds.energy_ratio != first.energy_ratio ||
                    bonds.strength_ratio != first.strength_ratio;
+        const double here = more * bonds.energy;
         measure += more;
-        const double own = bonds.energy / (bonds.length * bonds.length);
-        stiffness += more * own;
-        energy += more * bonds.energy;
-        shear += more * own * bonds.shear;
+        stiffness += here / (bonds.length * bonds.length);
+        strength += here / bonds.length;
+        energy += here;
+        whole += here * per_energy;
+        shear += here / (bonds.length * bonds.length) * bonds.shear;
         shear_energy += more * bonds.shear_energy;
-        tail += more * bonds.energy * bonds.tail;
-        energy_ratio += more * bonds.energy * bonds.energy_ratio;
-        strength_ratio += more * bonds.energy * bonds.strength_ratio;
+        energy_ratio += here * per_energy * bonds.energy_ratio;
+        strength_ratio += here / bonds.length * bonds.strength_ratio;
       }
-
-      BondScale
-      mean() const
-      {
-        // Equal bonds keep their last digits.
-        if (!is_mixed)
-          return first;
-        if (energy == 0.)
-          return {0., 1.};
-        return {energy / measure,
-                std::sqrt(energy / stiffness),
-                shear / stiffness,
-                shear_energy / measure,
-                tail / energy,
-                energy_ratio / energy,
-                strength_ratio / energy};
-      }
+    };
+    const auto add = [&](const BondScale &bonds, const double more, Sum &sum) {
+      sum.add(bonds, more, stored + bonds.tail * taken);
+    };
+    const auto mean = [&](const Sum &sum) -> BondScale {
+      // Equal bonds keep their last digits.
+      if (!sum.is_mixed)
+        return sum.first;
+      if (sum.energy == 0.)
+        return {0., 1.};
+      const double length = softens ? sum.strength / sum.stiffness :
+                                      std::sqrt(sum.energy / sum.stiffness);
+      BondScale    result = {softens ?
+                               sum.stiffness * length * length / sum.measure :
+                               sum.energy / sum.measure,
+                          length,
+                          sum.shear / sum.stiffness,
+                          sum.shear_energy / sum.measure};
+      if (softens)
+        result.tail =
+          (sum.whole / (result.energy * sum.measure) - stored) / taken;
+      result.energy_ratio   = sum.energy_ratio / sum.whole;
+      result.strength_ratio = sum.strength_ratio / sum.strength;
+      return result;
     };
     // Where boundaries with different bonds meet, a vertex has the bonds of
     // each of them. Nodal quadrature needs one law there. The mean stiffness a
     // = energy / length^2 and the mean energy keep what the bonds are as
     // springs and what it takes to break them; the threshold follows from these
-    // two. The means are weighted by the integral of the vertex's function on
-    // each face, as the energy of the vertex in Phi is.
+    // two, and of bonds that soften the strength has its mean as well. The
+    // means are weighted by the integral of the vertex's function on each face,
+    // as the energy of the vertex in Phi is.
     std::vector<Sum> nodes(contact.nodes.size());
     std::vector<Sum> held(contact.held_vertices.size());
     // The field is asked with the boundary of each face, as at such a vertex it
@@ -143,22 +156,23 @@ namespace Debond
     for (const Face &face : contact.faces)
       for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
         if (!face.is_held(k))
-          nodes[face.node(k)].add(
-            field->at(contact.nodes[face.node(k)].position, face.id),
-            contact.integral(face, k));
+          add(field->at(contact.nodes[face.node(k)].position, face.id),
+              contact.integral(face, k),
+              nodes[face.node(k)]);
         else if (!held.empty())
-          held[face.held_at(k)].add(
-            field->at(contact.held_vertices[face.held_at(k)].position, face.id),
-            contact.integral(face, k));
+          add(field->at(contact.held_vertices[face.held_at(k)].position,
+                        face.id),
+              contact.integral(face, k),
+              held[face.held_at(k)]);
         else if (k < dim)
           // A field has to have a value at all vertices, so that a fault in it
           // does not depend on the supports.
           field->at(face.vertices[k], face.id);
 
     for (const Sum &sum : nodes)
-      bonds_of_nodes.push_back(with_law(sum.mean()));
+      bonds_of_nodes.push_back(with_law(mean(sum)));
     for (const Sum &sum : held)
-      bonds_of_held.push_back(with_law(sum.mean()));
+      bonds_of_held.push_back(with_law(mean(sum)));
   }
 
 

@@ -165,6 +165,8 @@ namespace Debond
                      "goes with Bond failure = separate or a Mixed mode, which "
                      "need it",
                      {failure, mode});
+      if (p.law.pieces.empty())
+        return;
       if (!p.shear.strength.empty() &&
           (!has_mode ||
            (p.law.name != "bilinear" && p.law.name != "exponential")))
@@ -175,8 +177,6 @@ namespace Debond
       if (p.shear.strength.empty())
         table.without_effect("Contact law/Failure criterion",
                              "there is no Bond shear strength");
-      if (p.law.pieces.empty())
-        return;
       // Bonds that shear have to be springs at first, which is a straight piece
       // through the origin. Bonds that break at once have one such piece, and a
       // flat one behind it at most.
@@ -265,6 +265,9 @@ namespace Debond
                                      "Bond strength",
                                      "Fracture energy",
                                      "Traction factor",
+                                     "Bond shear stiffness",
+                                     "Bond shear strength",
+                                     "Shear fracture energy",
                                      "Tangential displacement"})
         if (const std::string entry = "Contact law/" + name;
             boost::starts_with(path + ' ', entry + ' ') && table.is_set(path))

@@ -88,6 +88,7 @@ namespace Debond
   /// The bonds of a boundary in shear, in units of force and length.
   struct ShearNumbers
   {
+    std::string boundary = {}; ///< with an energy of its own, its name
     std::optional<double> stiffness = {}; ///< none: as along the normal
     std::optional<double> strength  = {}; ///< none: follows from the energies
     std::optional<double> energy    = {}; ///< none: as in opening

@@ -273,7 +273,16 @@ namespace Debond
               throw EntryError(path + ' ' + name, "bonds bear no shear there");
             read_number(entry->boundaries.at(name), number);
             numbers->second.*member = number;
+            if (member == &ShearNumbers::energy)
+              numbers->second.boundary = name;
           });
+      const bool needs_energy =
+        shear.are_separate || shear.mixed_mode != MixedMode::none;
+      for (const auto &[id, numbers] : shear.boundaries)
+        if (needs_energy && !numbers.energy)
+          throw EntryError("Contact law/Shear fracture energy",
+                           "there has to be one for all boundaries whose bonds "
+                           "shear, or for each");
       return shear;
     }
   } // namespace
