@@ -47,6 +47,106 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Stiffness, strength and energy of bonds in shear.
+    void
+    bind_shear_numbers(ShearParameters &shear, ParameterTable &table)
+    {
+      // Without a text shear has the stiffness along the normal, which no
+      // number could say.
+      const auto none_or = [](const Pattern &number) {
+        return Pattern("nothing, or " + number.description(),
+                       [number](const std::string &text) {
+                         return text.empty() || number.match(text);
+                       });
+      };
+      // An entry with the name of a boundary behind it is for that boundary
+      // alone.
+      const auto bind_number = [&](const std::string      &path,
+                                   ShearParameters::Entry &entry,
+                                   const Pattern          &number,
+                                   const std::string      &documentation,
+                                   const std::string      &units) {
+        table.bind(
+          path, entry.everywhere, none_or(number), documentation, units);
+        table.bind_family(path,
+                          entry.boundaries,
+                          number,
+                          documentation +
+                            ", on the contact boundary or part of this name",
+                          units);
+      };
+      bind_number(
+        "Contact law/Bond shear stiffness",
+        shear.stiffness,
+        quantity(true),
+        "The stiffness of bonds in shear, with Tangential displacement = bonded: a number, or nothing for that along the normal. Where there are no bonds there are none in shear; the Traction factor multiplies both",
+        "force per volume");
+      bind_number(
+        "Contact law/Bond shear strength",
+        shear.strength,
+        quantity(),
+        "The strength of bonds that soften in shear, with a Mixed mode: a number, or nothing for that which follows from stiffness and energies with the form of the law",
+        "force per area");
+      bind_number(
+        "Contact law/Shear fracture energy",
+        shear.energy,
+        quantity(),
+        "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy, the Bond shear stiffness and, unless Bond shear strength says another one, the strength that follows from these",
+        "energy per area");
+    }
+
+
+
+    /// When bonds in shear break, and with which energy.
+    void
+    bind_failure(ShearParameters &shear, ParameterTable &table)
+    {
+      table.bind_choice(
+        "Contact law/Failure criterion",
+        shear.criterion,
+        {{"quadratic", FailureCriterion::quadratic},
+         {"largest", FailureCriterion::largest}},
+        "When bonds with a Bond shear strength begin to soften: if the squares of the tractions along the normal and in shear, as parts of their strengths, sum up to 1, or if one of these parts is 1");
+      table.bind_choice(
+        "Contact law/Bond failure",
+        shear.breaks_separately,
+        {{"common", false}, {"separate", true}},
+        "How bonded ones break: common, in all directions at once with one fracture energy, or separate, along the normal and in shear each by itself");
+      // The pattern and the reader share this function, so that what is allowed
+      // can be read. A name ends in a blank, behind which its exponent follows.
+      const auto parse_mode = [](const std::string &text, double &exponent) {
+        for (const auto &[name, mode] :
+             {std::pair<std::string, MixedMode>{"benzeggagh-kenane ",
+                                                MixedMode::benzeggagh_kenane},
+              {"power law ", MixedMode::power_law}})
+          if (boost::starts_with(text, name) &&
+              read_number(text.substr(name.size()), exponent) && exponent > 0.)
+            return std::make_optional(mode);
+        return text == "none" ? std::make_optional(MixedMode::none) :
+                                std::nullopt;
+      };
+      table.declare(
+        "Contact law/Mixed mode",
+        shear.mixed_mode_text,
+        Pattern("none, benzeggagh-kenane ETA or power law ALPHA, with a number "
+                "> 0",
+                [parse_mode](const std::string &text) {
+                  double unused;
+                  return parse_mode(text, unused).has_value();
+                }),
+        "How the energy that breaks bonds in all directions at once depends on the part m of shear in what they store, between Fracture energy G_I and Shear fracture energy G_II: G_I + (G_II - G_I) m^ETA, or ((1 - m)^ALPHA / G_I^ALPHA + m^ALPHA / G_II^ALPHA)^(-1/ALPHA). Such bonds have no energy to minimise; along a load path each step has one with m of the step before",
+        "none",
+        [&shear, parse_mode](const std::string &text) {
+          shear.mixed_mode      = *parse_mode(text, shear.exponent);
+          shear.mixed_mode_text = text;
+        });
+    }
+  } // namespace
+
+
+
   void
   bind_contact(ProblemParameters &p, ParameterTable &table)
   {
@@ -70,85 +170,7 @@ namespace Debond
       p.tangential_displacements,
       one_of({"fixed", "free", "bonded"}),
       "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is");
-    // Without a text shear has the stiffness along the normal, which no number
-    // could say.
-    const auto none_or = [](const Pattern &number) {
-      return Pattern("nothing, or " + number.description(),
-                     [number](const std::string &text) {
-                       return text.empty() || number.match(text);
-                     });
-    };
-    // An entry with the name of a boundary behind it is for that boundary
-    // alone.
-    const auto bind_number = [&](const std::string      &path,
-                                 ShearParameters::Entry &entry,
-                                 const Pattern          &number,
-                                 const std::string      &documentation,
-                                 const std::string      &units) {
-      table.bind(path, entry.everywhere, none_or(number), documentation, units);
-      table.bind_family(path,
-                        entry.boundaries,
-                        number,
-                        documentation +
-                          ", on the contact boundary or part of this name",
-                        units);
-    };
-    bind_number(
-      "Contact law/Bond shear stiffness",
-      p.shear.stiffness,
-      quantity(true),
-      "The stiffness of bonds in shear, with Tangential displacement = bonded: a number, or nothing for that along the normal. Where there are no bonds there are none in shear; the Traction factor multiplies both",
-      "force per volume");
-    bind_number(
-      "Contact law/Bond shear strength",
-      p.shear.strength,
-      quantity(),
-      "The strength of bonds that soften in shear, with a Mixed mode: a number, or nothing for that which follows from stiffness and energies with the form of the law",
-      "force per area");
-    bind_number(
-      "Contact law/Shear fracture energy",
-      p.shear.energy,
-      quantity(),
-      "What it takes to break bonds in shear, with Bond failure = separate or a Mixed mode: the law in shear has the same form, with this energy, the Bond shear stiffness and, unless Bond shear strength says another one, the strength that follows from these",
-      "energy per area");
-    table.bind_choice(
-      "Contact law/Failure criterion",
-      p.shear.criterion,
-      {{"quadratic", FailureCriterion::quadratic},
-       {"largest", FailureCriterion::largest}},
-      "When bonds with a Bond shear strength begin to soften: if the squares of the tractions along the normal and in shear, as parts of their strengths, sum up to 1, or if one of these parts is 1");
-    table.bind_choice(
-      "Contact law/Bond failure",
-      p.shear.breaks_separately,
-      {{"common", false}, {"separate", true}},
-      "How bonded ones break: common, in all directions at once with one fracture energy, or separate, along the normal and in shear each by itself");
-    // The pattern and the reader share this function, so that what is allowed
-    // can be read. A name ends in a blank, behind which its exponent follows.
-    const auto parse_mode = [](const std::string &text, double &exponent) {
-      for (const auto &[name, mode] :
-           {std::pair<std::string, MixedMode>{"benzeggagh-kenane ",
-                                              MixedMode::benzeggagh_kenane},
-            {"power law ", MixedMode::power_law}})
-        if (boost::starts_with(text, name) &&
-            read_number(text.substr(name.size()), exponent) && exponent > 0.)
-          return std::make_optional(mode);
-      return text == "none" ? std::make_optional(MixedMode::none) :
-                              std::nullopt;
-    };
-    table.declare(
-      "Contact law/Mixed mode",
-      p.shear.mixed_mode_text,
-      Pattern("none, benzeggagh-kenane ETA or power law ALPHA, with a number "
-              "> 0",
-              [parse_mode](const std::string &text) {
-                double unused;
-                return parse_mode(text, unused).has_value();
-              }),
-      "How the energy that breaks bonds in all directions at once depends on the part m of shear in what they store, between Fracture energy G_I and Shear fracture energy G_II: G_I + (G_II - G_I) m^ETA, or ((1 - m)^ALPHA / G_I^ALPHA + m^ALPHA / G_II^ALPHA)^(-1/ALPHA). Such bonds have no energy to minimise; along a load path each step has one with m of the step before",
-      "none",
-      [&p, parse_mode](const std::string &text) {
-        p.shear.mixed_mode      = *parse_mode(text, p.shear.exponent);
-        p.shear.mixed_mode_text = text;
-      });
+    bind_shear_numbers(p.shear, table);
+    bind_failure(p.shear, table);
   }
 } // namespace Debond
