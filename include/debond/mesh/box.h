@@ -11,10 +11,10 @@ namespace Debond
   /// then turned about zero.
   struct BoxParameters
   {
-    std::array<double, 3>       origin   = {{0., 0., 0.}};
     std::array<double, 3>       lengths  = {{0.4, 0.04, 0.04}};
     std::array<unsigned int, 3> cells    = {{40, 4, 4}};
     double                      rotation = 0.; ///< degrees, in the x-y plane
+    std::array<double, 3>       origin   = {{0., 0., 0.}};
   };
 
 
