@@ -293,7 +293,8 @@ namespace Debond
           const BondBreak bond =
             face.is_held(k) ? BondBreak{} : verification.breaks[face.node(k)];
           values.push_back(bond.factor.value_or(nan));
-          values.push_back(bond.mode.value_or(nan));
+          if (!verification.slips.empty())
+            values.push_back(bond.mode.value_or(nan));
         }
       return values;
     }
@@ -470,8 +471,9 @@ namespace Debond
           grid.at_points.push_back({scalar.name});
       }
     if (!verification.breaks.empty())
-      for (const std::string name : {"broken_at", "broken_mode"})
-        grid.at_points.push_back({name});
+      grid.at_points.push_back({"broken_at"});
+    if (!verification.breaks.empty() && !verification.slips.empty())
+      grid.at_points.push_back({"broken_mode"});
     grid.in_cells = {{"bond_state"}};
     for (const auto &[name, unused] : more)
       grid.in_cells.push_back({name});

@@ -67,7 +67,7 @@ def check_contact(folder, profile, dim, n_faces):
     contact = Piece(folder / "contact.vtu")
     at_points, corners, n_held = contact.at_points, 2 * (dim - 1), 0
     check("shares", contact.n_cells == dim * n_faces, contact.n_cells)
-    check("fields", {*contact.in_cells} == {"bond_state"} and {*at_points} == {
+    check("fields", {*contact.in_cells} == {"bond_state"} and {*at_points} - {"broken_at"} == {
         "displacement", "tangential_force_density", "u_nu", "gap", "normal_force_density",
         "normal_traction", "law_violation", "bond_stiffness", "bond_threshold", "damage", "initial_gap"}, at_points)
     for cell, state in enumerate(contact.in_cells["bond_state"]):
@@ -76,6 +76,10 @@ def check_contact(folder, profile, dim, n_faces):
         density = at_points["normal_force_density"]
         check("state", state == STATES[row["state"]], (place(contact, i), row))
         near("u_nu", at_points["u_nu"][i], row["u_nu"], 1e-3)
+        if "broken_at" in at_points and len(row) > 2:
+            factor = at_points["broken_at"][i]
+            check("broken at", row["broken_at"] in ("", factor) and math.isnan(factor) == (
+                row["broken_at"] == ""), (factor, row))
         if len(row) > 2:
             near("force", density[i], row["normal_force_density"])
             # Bonds are at the nodes, whose forces are those of the law.

@@ -68,7 +68,7 @@ namespace
     box.cells    = {{10 * n, n, n}};
     box.rotation = rotation;
     if (rotation != 0.)
-      box.origin = {{-0.05, 0.3, 0.1}};
+      box.origin = {{-0.08, 0.3, 0.1}};
     return box;
   }
 
