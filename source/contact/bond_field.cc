@@ -10,8 +10,8 @@ namespace Debond
   namespace
   {
     /// The value of @p field, or @p otherwise without one. Throws
-    /// BondFieldError with the place if it is negative by more than
-    /// @p rounding, or 0 and has to be more.
+    /// BondFieldError with the place, the name of the entry and that of the
+    /// boundary if it is negative, or 0 and has to be more.
     template <int dim>
     double
     bond_value(const typename BondField<dim>::Field      &field,

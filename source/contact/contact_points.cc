@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/contact_points.h>
 
 #include <Eigen/QR>
@@ -80,10 +81,11 @@ namespace Debond
     if (field == nullptr)
       return;
 
-    // What bonds take on the first piece and beyond, if they soften.
-    const bool   softens = law.softens();
-    const double stored  = softens ? law.value(law.pieces()[0].lower) : 1.;
-    const double taken   = softens ? law.pieces().largest_value() - stored : 0.;
+    // What bonds take on the first piece and beyond, if they soften and break.
+    const bool softens =
+      law.softens() && std::isfinite(law.pieces().largest_value());
+    const double stored = softens ? law.value(law.pieces()[0].lower) : 1.;
+    const double taken  = softens ? law.pieces().largest_value() - stored : 0.;
 
     // The bonds of the faces around a vertex, each as often as its measure:
     // stiffness, strength, and energy, and what belongs to each of them.
@@ -138,6 +140,9 @@ namespace Debond
       if (softens)
         result.tail =
           (sum.whole / (result.energy * sum.measure) - stored) / taken;
+      // Where only other numbers differ the tail is 1 but for rounding.
+      if (std::abs(result.tail - 1.) < Tolerance::rounding_of_data)
+        result.tail = 1.;
       result.energy_ratio   = sum.energy_ratio / sum.whole;
       result.strength_ratio = sum.strength_ratio / sum.strength;
       return result;

@@ -91,7 +91,7 @@ namespace Debond
     std::string boundary = {}; ///< with an energy of its own, its name
     std::optional<double> stiffness = {}; ///< none: as along the normal
     std::optional<double> strength  = {}; ///< none: follows from the energies
-    std::optional<double> energy    = {}; ///< none: as in opening
+    std::optional<double> energy    = {}; ///< none if nothing needs it
   };
 
 
@@ -184,8 +184,8 @@ namespace Debond
     at_mode(const BondScale &bonds, const double m) const;
 
   private:
-    /// Returns the part @p q of opening's fracture energy that bonds take with
-    /// the part @p m of shear, and theirs of opening's strength.
+    /// Returns the fracture energy with the part @p m of shear over that of
+    /// opening, and below the strength over that of opening.
     double
     energy_at(const BondScale &bonds, const double m) const;
 

@@ -276,6 +276,9 @@ namespace Debond
             if (member == &ShearNumbers::energy)
               numbers->second.boundary = name;
           });
+      // Where nothing shears there is no mode, whatever the entry says.
+      if (shear.boundaries.empty())
+        shear.mixed_mode = MixedMode::none;
       const bool needs_energy =
         shear.are_separate || shear.mixed_mode != MixedMode::none;
       for (const auto &[id, numbers] : shear.boundaries)

@@ -21,8 +21,8 @@ namespace Debond
    *
    * The path ends early with a factor that is not solved or whose result is not
    * verified, and before the current factor if a signal arrives in it, unless
-   * that is the first one. Then come the largest force, for which steps are
-   * done again in smaller ones, the global branch, if a factorisation gives the
+   * that is the first one. Each step is looked into for the largest force, see
+   * LargestForce. Then come the global branch, if a factorisation gives the
    * problem on the contact normals, and the scene's arc, see follow_arc(), from
    * the first factor. The status of the solution is success if all factors were
    * solved, whether or not all of them are verified. A table of the factors is
@@ -30,8 +30,8 @@ namespace Debond
    *
    * @p begun has the scene, how it is solved, and the steps that an earlier run
    * or call has done on this mesh; the observer sees the last of them again.
-   * With @p only_steps neither the largest force nor the branch nor the arc is
-   * looked for.
+   * With @p only_steps neither the branch nor the arc is looked for, which is
+   * left to the last mesh.
    */
   template <int dim>
   Answer<dim>
