@@ -189,66 +189,145 @@ namespace Debond
 
 
 
-  template <int dim>
-  std::vector<dealii::Point<dim>>
-  fronts(const ContactBoundary<dim>  &boundary,
-         const AdhesionIntegral<dim> &adhesion,
-         const VectorView            &s)
+  namespace
   {
-    // In the plane a front is a point of the boundary. On a face with bonds at
-    // both ends it is the zero of the opening minus broken_beyond(), which is
-    // taken for linear. If the scene's bonds begin inside a face the front is
-    // in its middle, and if they begin at a vertex it is there.
-    std::vector<dealii::Point<dim>> result;
-    if (dim != 2 || adhesion.adhesive_law().broken_beyond() == 0.)
+    /// A part of the front by its ends: a point in the plane, otherwise a
+    /// segment.
+    template <int dim>
+    using FrontPiece = std::array<dealii::Point<dim>, dim - 1>;
+
+
+
+    template <int dim>
+    std::vector<FrontPiece<dim>>
+    front_pieces(const ContactBoundary<dim>  &boundary,
+                 const AdhesionIntegral<dim> &adhesion,
+                 const VectorView            &s)
+    {
+      // On a face with bonds at all vertices the front is the zero of the
+      // opening minus broken_beyond(), which is taken for linear. If the
+      // scene's bonds begin inside a face the front is halfway, and if they
+      // begin at one of its sides, a vertex or an edge, it is there.
+      std::vector<FrontPiece<dim>> result;
+      // By the sum of a side's vertices, what bonds next to it do on the first
+      // of its faces: 0 if there are none, 1 if they are broken, 2 if they
+      // hold.
+      std::map<std::array<double, dim>, unsigned int> grips;
+      for (const auto &face : boundary.faces)
+        {
+          // How far bonds are from the last kink; below 0 they hold.
+          std::array<double, dim>       beyond;
+          std::array<unsigned int, dim> grip;
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              const auto      inside = just_inside<dim>(k);
+              const BondScale bonds  = adhesion.points().bonds_at(face, inside);
+              // On the other side of the vertex bonds may not shear.
+              std::array<double, dim> place = inside;
+              if (bonds.shear == 0.)
+                {
+                  place    = {};
+                  place[k] = 1.;
+                }
+              // What has broken for good stays broken if it closes.
+              beyond[k] =
+                std::max(adhesion.points().opening(face, place, s),
+                         -adhesion.reached_at(face, k) * bonds.length) -
+                bonds.law->broken_beyond() * bonds.length;
+              grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
+            }
+          for (unsigned int k = dim; k-- > 0;)
+            {
+              // The side opposite to vertex k.
+              FrontPiece<dim>         side;
+              std::array<double, dim> place = {};
+              const unsigned int      here  = grip[(k + 1) % dim];
+              for (unsigned int other = 1; other < dim; ++other)
+                {
+                  side[other - 1] = face.vertices[(k + other) % dim];
+                  for (unsigned int d = 0; d < dim; ++d)
+                    place[d] += side[other - 1][d];
+                }
+              if (here == 1 || here != grip[(k + dim - 1) % dim])
+                continue;
+              const auto [there, is_first] = grips.emplace(place, here);
+              // The second face: on one side bonds hold, and on the other one
+              // there are none.
+              if (!is_first && here + there->second == 2)
+                result.push_back(side);
+            }
+          // Without bonds that hold at some vertices and do not at others no
+          // front is inside the face. It cuts the edges of the vertex that is
+          // alone.
+          const unsigned int n_hold = std::count(grip.begin(), grip.end(), 2);
+          if (n_hold % dim == 0)
+            continue;
+          unsigned int alone = 0;
+          while ((grip[alone] == 2) != (n_hold == 1))
+            ++alone;
+          FrontPiece<dim> piece;
+          for (unsigned int other = 1; other < dim; ++other)
+            {
+              const unsigned int k    = (alone + other) % dim;
+              const double       part = grip[alone] * grip[k] == 0 ?
+                                          0.5 :
+                                          beyond[alone] / (beyond[alone] - beyond[k]);
+              piece[other - 1] =
+                face.vertices[alone] +
+                part * (face.vertices[k] - face.vertices[alone]);
+            }
+          result.push_back(piece);
+        }
       return result;
-    // By the coordinates of a vertex, what bonds next to it do on the first of
-    // its faces: 0 if there are none, 1 if they are broken, 2 if they hold.
-    std::map<double, std::map<double, unsigned int>> grips;
-    for (const auto &face : boundary.faces)
-      {
-        // How far bonds are from the last kink; below 0 they hold.
-        std::array<double, dim>       beyond;
-        std::array<unsigned int, dim> grip;
-        for (unsigned int k = 0; k < dim; ++k)
-          {
-            const auto      inside = just_inside<dim>(k);
-            const BondScale bonds  = adhesion.points().bonds_at(face, inside);
-            // On the other side of the vertex bonds may not shear.
-            std::array<double, dim> place = inside;
-            if (bonds.shear == 0.)
-              {
-                place    = {};
-                place[k] = 1.;
-              }
-            // What has broken for good stays broken if it closes.
-            beyond[k] = std::max(adhesion.points().opening(face, place, s),
-                                 -adhesion.reached_at(face, k) * bonds.length) -
-                        bonds.law->broken_beyond() * bonds.length;
-            grip[k] = bonds.energy == 0. ? 0 : beyond[k] < 0. ? 2 : 1;
-            const dealii::Point<dim> &vertex = face.vertices[k];
-            const auto [other, is_first] =
-              grips[vertex[0]].emplace(vertex[1], grip[k]);
-            // The second face at the vertex: on one side bonds hold, and on the
-            // other one there are none.
-            if (!is_first && grip[k] != 1 && grip[k] + other->second == 2)
-              result.push_back(vertex);
-          }
-        // Without bonds that hold at one end and do not at the other no front
-        // is inside the face.
-        if ((grip[0] == 2) == (grip[1] == 2))
-          continue;
-        const double part =
-          grip[0] * grip[1] == 0 ? 0.5 : beyond[0] / (beyond[0] - beyond[1]);
-        result.push_back(face.vertices[0] +
-                         part * (face.vertices[1] - face.vertices[0]));
-      }
+    }
+  } // namespace
+
+
+
+  template <>
+  std::vector<dealii::Point<2>>
+  fronts(const ContactBoundary<2>  &boundary,
+         const AdhesionIntegral<2> &adhesion,
+         const VectorView          &s)
+  {
+    std::vector<dealii::Point<2>> result;
+    if (adhesion.adhesive_law().broken_beyond() != 0.)
+      for (const auto &[point] : front_pieces(boundary, adhesion, s))
+        result.push_back(point);
     return result;
   }
 
 
 
-  DEBOND_INSTANTIATE(fronts);
+  template <>
+  std::vector<dealii::Point<3>>
+  fronts(const ContactBoundary<3>  &boundary,
+         const AdhesionIntegral<3> &adhesion,
+         const VectorView          &s)
+  {
+    dealii::Point<3> least, mean, largest;
+    double           length = 0.;
+    bool             is_any = false;
+    if (adhesion.adhesive_law().broken_beyond() != 0.)
+      for (const auto &[a, b] : front_pieces(boundary, adhesion, s))
+        {
+          length += a.distance(b);
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              mean[d] += a.distance(b) * (a[d] + b[d]) / 2.;
+              const auto [low, high] = std::minmax(a[d], b[d]);
+              least[d]               = is_any ? std::min(least[d], low) : low;
+              largest[d] = is_any ? std::max(largest[d], high) : high;
+            }
+          is_any = true;
+        }
+    if (length == 0.)
+      return {};
+    return {least, dealii::Point<3>(mean / length), largest};
+  }
+
+
+
   DEBOND_INSTANTIATE(broken_zone);
   DEBOND_INSTANTIATE(zone_without_bonds);
 } // namespace Debond

@@ -156,6 +156,29 @@ def check_fronts_stay():
         check("what is broken", min(parts) == max(parts) > 0.2, parts)
 
 
+def check_fronts_in_3d():
+    """Lines: where the scene's bonds begin, and of a strip that is peeled from its right end.
+    What is broken there is as long as the way from the end to the front, in the mean."""
+    scenes.section("Fronts in 3D")
+    row = solve("Lengths=0.3, 0.2, 0.2", "Cells=6, 2, 4", f"Young modulus={E}", "Poisson ratio=0",
+                "Contact boundary=bottom", "Clamped boundaries=top",
+                f"Bond stiffness=if(x < 0.0999999, 0, {a})", f"Bond threshold={M}",
+                "Traction bottom=0; 1; 0", "Tangential displacement=free", "Factors=0.2",
+                NO_GLOBAL)["path"][0]
+    for place, z in zip(row["fronts"].split(";"), (0., 0.1, 0.2)):
+        check("where bonds begin", max(abs(float(x) - wanted) for x, wanted in
+                                       zip(place.split(), (0.1, 0., z))) <= 1e-12, row["fronts"])
+    for row in solve("Lengths=0.4, 0.02, 0.1", "Cells=40, 1, 6", "Young modulus=100",
+                     "Poisson ratio=0.3", "Clamped boundaries=left", "Contact boundary=bottom",
+                     "Bond stiffness=100", f"Bond threshold={0.1 * M}",
+                     "Tangential displacement=free", "Displacement right=free; 0.03; free",
+                     "Displacement factors=0.5, 1", NO_GLOBAL)["path"]:
+        least, mean, largest = (float(place.split()[0]) for place in row["fronts"].split(";"))
+        close("broken zone", row["broken_zone"], 0.1 * (0.4 - mean), 0.005)
+        # The edges are anticlastic: the front is curved, by less than a few cells.
+        check("order", 0.1 < least < mean < largest < least + 0.05, row["fronts"])
+
+
 def check_moved_column(dim, name, n_steps, factors, *entries):
     """Pulled by its top, it has a linear way from the displacement d = 0 to the snap at
     M (1 + a/k), has no force then, and closes at M. The least J is that without bonds from

@@ -23,11 +23,13 @@ namespace Debond
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s);
 
-  /// Returns the places on a plane body where bonds that hold meet bonds that
-  /// do not, or none, in the order of the faces: where they are opened by
-  /// AdhesiveLaw::broken_beyond(), at a vertex where the scene's bonds begin,
-  /// or in the middle of a face at one end of which there are none.
-  /// They stay where they are when a crack closes. Solids have none.
+  /// Returns where bonds that hold meet bonds that do not, or none: where they
+  /// are opened by AdhesiveLaw::broken_beyond(), at a vertex or edge where the
+  /// scene's bonds begin, or halfway on a face at one vertex of which there are
+  /// none. Of plane bodies these are places in the order of the faces. Of
+  /// solids they are lines, and the result has the least coordinates of all,
+  /// the mean ones by length, and the largest; nothing where there is no line.
+  /// They stay where they are when a crack closes.
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,
