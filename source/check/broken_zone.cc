@@ -259,7 +259,7 @@ namespace Debond
           // Without bonds that hold at some vertices and do not at others no
           // front is inside the face. It cuts the edges of the vertex that is
           // alone.
-          const unsigned int n_hold = std::count(grip.begin(), grip.end(), 2);
+          const auto n_hold = std::count(grip.begin(), grip.end(), 2u);
           if (n_hold % dim == 0)
             continue;
           unsigned int alone = 0;
