@@ -160,7 +160,7 @@ def check_fronts_in_3d():
     """Lines: where the scene's bonds begin, and of a strip that is peeled from its right end.
     What is broken there is as long as the way from the end to the front, in the mean."""
     scenes.section("Fronts in 3D")
-    row = solve("Lengths=0.3, 0.2, 0.2", "Cells=6, 2, 4", f"Young modulus={E}", "Poisson ratio=0",
+    row = solve("Dimension=3", "Lengths=0.3, 0.2, 0.2", "Cells=6, 2, 4", f"Young modulus={E}", "Poisson ratio=0",
                 "Contact boundary=bottom", "Clamped boundaries=top",
                 f"Bond stiffness=if(x < 0.0999999, 0, {a})", f"Bond threshold={M}",
                 "Traction bottom=0; 1; 0", "Tangential displacement=free", "Factors=0.2",
@@ -168,7 +168,7 @@ def check_fronts_in_3d():
     for place, z in zip(row["fronts"].split(";"), (0., 0.1, 0.2)):
         check("where bonds begin", max(abs(float(x) - wanted) for x, wanted in
                                        zip(place.split(), (0.1, 0., z))) <= 1e-12, row["fronts"])
-    for row in solve("Lengths=0.4, 0.02, 0.1", "Cells=40, 1, 6", "Young modulus=100",
+    for row in solve("Dimension=3", "Lengths=0.4, 0.02, 0.1", "Cells=40, 1, 6", "Young modulus=100",
                      "Poisson ratio=0.3", "Clamped boundaries=left", "Contact boundary=bottom",
                      "Bond stiffness=100", f"Bond threshold={0.1 * M}",
                      "Tangential displacement=free", "Displacement right=free; 0.03; free",
