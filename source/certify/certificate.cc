@@ -327,7 +327,7 @@ namespace Debond
       // A stagnated iteration does as well: any equilibrated stress gives a
       // bound, and what is wrong in x only makes it a little lower.
       const BoundQPResult minimum =
-        solve_bound_qp(M, r, Eigen::VectorXd::Zero(dim * n), active);
+        solve_bound_qp(M, r, Bounds(Eigen::VectorXd::Zero(dim * n)), active);
       if (minimum.status != SolverStatus::success &&
           minimum.status != SolverStatus::stagnated)
         throw FixedStateError("the tractions of the contact boundary were not "

@@ -5,6 +5,7 @@
 #include <debond/base/interruption.h>
 #include <debond/base/views.h>
 #include <debond/optimization/interval.h>
+#include <debond/optimization/kinks.h>
 
 #include <Eigen/SparseCore>
 
@@ -12,7 +13,8 @@ namespace Debond
 {
   /**
    * A function Phi that is the least of convex quadratics (at each of its
-   * quadrature points): one at s lies above Phi everywhere and touches it at s.
+   * quadrature points), but for its kinks(): one at s lies above Phi everywhere
+   * and touches it at s.
    * s are the normal displacements of the contact nodes in their order, and
    * after them displacements along the boundary where Phi depends on these:
    * lengths.
@@ -34,6 +36,15 @@ namespace Debond
     /// The second derivative of these, positive semidefinite.
     virtual Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const = 0;
+
+    /// Terms of Phi that are no such quadratics and convex: they are part of
+    /// change(), and of no other function here.
+    virtual const Kinks &
+    kinks() const
+    {
+      static const Kinks none;
+      return none;
+    }
 
     /// Returns whether infinitely many quadratics touch Phi, as where bonds
     /// soften: then Phi's own second derivative is less than theirs.

@@ -100,7 +100,8 @@ namespace Debond
         const double largest_force = n > 0 ? force_terms.maxCoeff() : 0.;
         // Signs count beyond rounding only: an unknown at its bound without a
         // force on it would otherwise go in and out for ever.
-        settled = rule.update(d - b,
+        settled = rule.update(b,
+                              d,
                               mu,
                               Tolerance::active_set *
                                 (n > 0 ? d.lpNorm<Eigen::Infinity>() : 0.),

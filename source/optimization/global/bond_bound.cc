@@ -96,7 +96,7 @@ namespace Debond
                   // l, m, end and t are negative.
                   M(j, j) += k(j) * std::clamp(slope / l(i), d, 1. + d);
                 }
-            node.x = solve_bound_qp(M, g, upper, active).x;
+            node.x = solve_bound_qp(M, g, Bounds(upper, phi.kinks()), active).x;
           }
       }
 
@@ -134,18 +134,34 @@ namespace Debond
             // What the term of the bond is at x itself: by how much it is above
             // its least value says where a choice would raise the bound.
             bounds(i, 2) += node.x(j) * (r(j) + 0.5 * D(j) * node.x(j));
+            const double w = phi.kinks().has(j) ? phi.kinks().weight(j) : 0.;
+            const double p = w > 0. ? phi.kinks().place(j) : 0.;
+            bounds(i, 2) += w * std::abs(node.x(j) - p);
             for (const int broken : {0, 1})
               {
                 // The least value is concave in r, so that the least one for
                 // all that r can be is at an end.
+                // A kink makes the term one on each side of it.
+                const double low = node.lower(j), high = node.upper(j);
+                const auto   on_side =
+                  [&](const double slope, const double from, const double to) {
+                    return from > to ?
+                             infinity :
+                             Growth{0., 0., slope, D(j) + (1 - broken) * k(j)}
+                               .least({from, to});
+                  };
                 const auto least_with = [&](const double r_j) {
-                  return Growth{0., 0., r_j, D(j) + (1 - broken) * k(j)}.least(
-                    {node.lower(j), node.upper(j)});
+                  return w == 0. ?
+                           on_side(r_j, low, high) :
+                           std::min(on_side(r_j - w, low, std::min(high, p)) +
+                                      w * p,
+                                    on_side(r_j + w, std::max(low, p), high) -
+                                      w * p);
                 };
                 const double least = std::min(least_with(r(j) - error(j)),
                                               least_with(r(j) + error(j)));
                 bounds(i, broken) += least;
-                size += std::abs(least);
+                size += std::abs(least) + w * std::abs(p);
               }
           }
         const Eigen::VectorXd least = bounds.leftCols(2).rowwise().minCoeff();

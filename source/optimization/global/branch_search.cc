@@ -349,8 +349,10 @@ namespace Debond
     constexpr unsigned int largest_first_look = 100;
 
     /// Those of a look on so few, before any search and before the whole one: a
-    /// proof of few nodes takes less time than these.
-    constexpr unsigned int nodes_of_first_look = 10, nodes_of_second_look = 30;
+    /// proof of few nodes takes less time than these. The whole search takes up
+    /// to a minute, so that a second is well spent on the second look.
+    constexpr unsigned int nodes_of_first_look = 10, nodes_of_second_look = 300;
+    constexpr double       operations_of_second_look = 1e9;
 
     /// Each is begun because the one before found a lower point.
     constexpr unsigned int most_proofs = 4;
@@ -382,7 +384,13 @@ namespace Debond
         quick.flips         = false;
         search(quick, s);
         if (problem.interruption.requested() ||
-            is_proved(s, is_separable && is_small ? nodes_of_second_look : 1))
+            is_proved(s,
+                      is_separable && is_small ?
+                        static_cast<unsigned int>(
+                          std::min(double(nodes_of_second_look),
+                                   operations_of_second_look /
+                                     (operations_of_node * n * n * n))) :
+                        1))
           return result;
         // Search and proof help each other: a proof that finds a lower point
         // gives the search a start from which moves have not been tried, and a

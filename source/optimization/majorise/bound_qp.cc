@@ -126,14 +126,16 @@ namespace Debond
     {
       const Eigen::Ref<const Eigen::MatrixXd> &M;
       const Eigen::VectorXd                   &r;
-      const Eigen::VectorXd                   &b;
+      const Bounds                            &bounds;
       ActiveSet                               &active;
       const double                             tolerance;
       BorderedCholesky                        &factor;
-      const unsigned int n       = static_cast<unsigned int>(r.size());
-      BoundQPResult      result  = {};
-      bool               refined = false; ///< in extended precision
-      Eigen::VectorXd    force   = {};    ///< r - M x of the last point
+      const unsigned int     n       = static_cast<unsigned int>(r.size());
+      const Eigen::VectorXd &b       = bounds.place;
+      BoundQPResult          result  = {};
+      bool                   refined = false; ///< in extended precision
+      Eigen::VectorXd        load    = r;     ///< r and the forces of kinks
+      Eigen::VectorXd        force   = {};    ///< load - M x of the last point
 
       BoundQPResult
       run()
@@ -155,8 +157,23 @@ namespace Debond
         // A result that is whole counts, whenever the signal came.
         if (!can_be_verified(result.status) && Interruption::noticed())
           result.status = SolverStatus::interrupted;
-        result.x = result.x.cwiseMin(b);
+        result.x = bounds.projected(result.x, active);
         return result;
+      }
+
+      /// The indices that are not active. Sets the load on them.
+      std::vector<unsigned int>
+      free_indices()
+      {
+        std::vector<unsigned int> free;
+        load = r;
+        for (unsigned int i = 0; i < n; ++i)
+          if (!is_active(active[i]))
+            {
+              free.push_back(i);
+              load(i) += bounds.force(i, active[i]);
+            }
+        return free;
       }
 
       /// The minimum with the given components free, the others at b.
@@ -169,10 +186,10 @@ namespace Debond
         Eigen::VectorXd x = b;
         for (const unsigned int i : free)
           x(i) = 0.;
-        result.operations += solve_on(free, M, r, refined, factor, x) +
+        result.operations += solve_on(free, M, load, refined, factor, x) +
                              operations_per_entry * double(n) * double(n);
-        // The multipliers of active bounds, mu = r - M x >= 0 at the minimum;
-        // on free components the same is rounding.
+        // The multipliers of active bounds, mu = load - M x >= 0 at the
+        // minimum; on free components the same is rounding.
         result.mu = force = force_at(x);
         for (const unsigned int i : free)
           result.mu(i) = 0.;
@@ -182,7 +199,7 @@ namespace Debond
       Eigen::VectorXd
       force_at(const Eigen::VectorXd &x) const
       {
-        return refined ? residual(M, r, x) : r - M * x;
+        return refined ? residual(M, load, x) : load - M * x;
       }
 
       bool
@@ -218,23 +235,27 @@ namespace Debond
           result.status = status;
       }
 
-      /// Whether the projection of the last point onto x <= b meets the
-      /// optimality conditions to the tolerance.
+      /// Whether the projection of the last point meets the optimality
+      /// conditions to the tolerance.
       bool
       is_near() const
       {
         // Free components need no force, those at their bounds one that
         // presses. Few move by the projection.
-        const Eigen::VectorXd projected = result.x.cwiseMin(b);
-        Eigen::VectorXd       left      = force;
+        const Eigen::VectorXd near = bounds.projected(result.x, active);
+        Eigen::VectorXd       left = force;
         for (unsigned int i = 0; i < n; ++i)
           // The force at the projected point is that of the last one less M
           // times what the projection has moved.
-          if (projected(i) < result.x(i))
-            left += M.col(i) * (result.x(i) - projected(i));
-        return (projected.array() < b.array())
-                 .select(left.cwiseAbs(), -left)
-                 .maxCoeff() <= tolerance * r.lpNorm<Eigen::Infinity>();
+          if (near(i) != result.x(i))
+            left += M.col(i) * (result.x(i) - near(i));
+        double worst = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          worst = std::max(worst,
+                           near(i) == b(i) ?
+                             -bounds.hold(i, left(i) + r(i) - load(i)) :
+                             std::abs(left(i)));
+        return worst <= tolerance * r.lpNorm<Eigen::Infinity>();
       }
 
       /// All wrong indices at once. Returns false if that does not lead to the
@@ -245,14 +266,11 @@ namespace Debond
         ActiveSetRule rule;
         while (is_within_limits() && !rule.wanders())
           {
-            std::vector<unsigned int> free;
-            for (unsigned int i = 0; i < n; ++i)
-              if (active[i] == 0)
-                free.push_back(i);
             refined  = result.steps >= updates_before_refinement;
-            result.x = minimum_on(free);
-            if (rule.update(result.x - b,
-                            result.mu,
+            result.x = minimum_on(free_indices());
+            if (rule.update(bounds,
+                            result.x,
+                            force,
                             noise(result.x),
                             force_noise(result.x),
                             active) == 0 ||
@@ -271,30 +289,30 @@ namespace Debond
       {
         // Bertsekas: a bound is kept active where the force presses on it, and
         // the Newton step for the others is followed along its projection onto
-        // x <= b, as far as the functional falls. So it cannot wander.
-        Eigen::VectorXd x = result.x.cwiseMin(b);
+        // x <= b, as far as the functional falls. So it cannot wander. Kinks
+        // are left to the side that the force points to.
+        Eigen::VectorXd x = bounds.projected(result.x, active);
         refined           = false;
         while (is_within_limits())
           {
-            const Eigen::VectorXd     pull     = force_at(x);
-            const double              mu_noise = force_noise(x);
-            std::vector<unsigned int> free;
+            load                           = r;
+            const Eigen::VectorXd pull     = force_at(x);
+            const double          mu_noise = force_noise(x);
             for (unsigned int i = 0; i < n; ++i)
               {
-                active[i] = x(i) >= b(i) && pull(i) >= -mu_noise;
-                if (active[i] == 0)
-                  free.push_back(i);
+                active[i] = bounds.state(i, x(i));
+                if (is_active(active[i]) && bounds.hold(i, pull(i)) < -mu_noise)
+                  active[i] = bounds.left_to(i, pull(i));
               }
             // If the whole step stays within the bounds and the kept
             // multipliers press, it leads to the minimum.
-            result.x = minimum_on(free);
-            if (((result.x - b).array() <= noise(result.x)).all() &&
-                result.mu.minCoeff() >= -force_noise(result.x))
+            result.x = minimum_on(free_indices());
+            if (is_minimum())
               {
                 end(SolverStatus::success);
                 return;
               }
-            if (!step(result.x - x, pull, x))
+            if (!step(result.x - x, force_at(x), x))
               {
                 if (std::exchange(refined, true) == false)
                   continue;
@@ -307,6 +325,21 @@ namespace Debond
           }
       }
 
+      /// Whether the last point is within the bounds, and held where it is
+      /// active.
+      bool
+      is_minimum() const
+      {
+        const double x_noise = noise(result.x);
+        const double least   = -force_noise(result.x);
+        for (unsigned int i = 0; i < n; ++i)
+          if (is_active(active[i]) ?
+                bounds.hold(i, force(i)) < least :
+                bounds.excess(i, result.x(i), active[i]) > x_noise)
+            return false;
+        return true;
+      }
+
       /// Goes from x along the projection of x + t @p direction, with t = 1 or
       /// a half, a quarter, ... Returns whether the functional falls.
       bool
@@ -316,7 +349,8 @@ namespace Debond
       {
         for (unsigned int k = 0; k < maximum_halvings_of_step; ++k)
           {
-            const Eigen::VectorXd change = (x + direction).cwiseMin(b) - x;
+            const Eigen::VectorXd change =
+              bounds.projected(x + direction, active) - x;
             // The functional changes by 1/2 c'M c - f'c along a change c. Some
             // part of the first-order descent f'c has to be left, else steps
             // could shrink for ever.
@@ -324,7 +358,7 @@ namespace Debond
             if (slope > 0. && 0.5 * change.dot(M * change) <=
                                 (1. - Tolerance::least_descent) * slope)
               {
-                x = (x + direction).cwiseMin(b);
+                x = bounds.projected(x + direction, active);
                 return true;
               }
             direction *= 0.5;
@@ -337,17 +371,19 @@ namespace Debond
 
 
   unsigned int
-  ActiveSetRule::update(const Eigen::VectorXd &excess,
-                        const Eigen::VectorXd &mu,
-                        const double           excess_noise,
-                        const double           mu_noise,
+  ActiveSetRule::update(const Bounds          &bounds,
+                        const Eigen::VectorXd &x,
+                        const Eigen::VectorXd &force,
+                        const double           x_noise,
+                        const double           force_noise,
                         ActiveSet             &active)
   {
-    // Indices are wrong in two ways: active with a multiplier that pulls, and
-    // free beyond the bound. Either way the index changes sides.
+    // Indices are wrong in two ways: active without a hold, and free beyond the
+    // bound or kink. Either way the index changes sides.
     std::vector<unsigned int> wrong;
     for (unsigned int i = 0; i < active.size(); ++i)
-      if (active[i] != 0 ? mu(i) < -mu_noise : excess(i) > excess_noise)
+      if (is_active(active[i]) ? bounds.hold(i, force(i)) < -force_noise :
+                                 bounds.excess(i, x(i), active[i]) > x_noise)
         wrong.push_back(i);
     if (wrong.size() < fewest)
       {
@@ -359,7 +395,10 @@ namespace Debond
     // All at once is fast but may return to a set that was there before; the
     // first alone never does.
     for (std::size_t k = 0; k < (wanders() ? 1 : wrong.size()); ++k)
-      active[wrong[k]] = active[wrong[k]] == 0;
+      {
+        const unsigned int i = wrong[k];
+        active[i] = is_active(active[i]) ? bounds.left_to(i, force(i)) : 1;
+      }
     return static_cast<unsigned int>(wrong.size());
   }
 
@@ -376,12 +415,13 @@ namespace Debond
   BoundQPResult
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
                  const Eigen::VectorXd                   &r,
-                 const Eigen::VectorXd                   &b,
+                 const Bounds                            &bounds,
                  ActiveSet                               &active,
                  const double                             tolerance,
                  BorderedCholesky                        *factor)
   {
     BorderedCholesky own;
-    return BoundQP{M, r, b, active, tolerance, factor ? *factor : own}.run();
+    return BoundQP{M, r, bounds, active, tolerance, factor ? *factor : own}
+      .run();
   }
 } // namespace Debond

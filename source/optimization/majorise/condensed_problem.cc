@@ -49,8 +49,9 @@ namespace Debond
     , S(N.cols() > 0 ? MatrixView(S_of_loose) : problem.S)
     , stiffness(stiffness)
     , g(problem.g)
-    , upper(problem.upper)
     , phi(problem.phi)
+    , bounds(problem.upper, phi.kinks())
+    , upper(bounds.place)
     , s(start)
     , active(start.size())
   {
@@ -63,7 +64,7 @@ namespace Debond
         (N.transpose() * (phi.curvature(Eigen::VectorXd::Zero(s.size())) * N))
           .norm();
     for (unsigned int i = 0; i < s.size(); ++i)
-      active[i] = s(i) == upper(i);
+      active[i] = bounds.state(i, s(i));
   }
 
 
@@ -103,8 +104,14 @@ namespace Debond
         work += g(i) * s(i);
         // S s + xi - g + mu = 0,  mu >= 0,  s <= b,  mu'(s - b) = 0, b being
         // the upper bounds.
-        const double mu = g(i) - S_s(i) - xi(i);
-        violation = std::max(violation, s(i) < upper(i) ? std::abs(mu) : -mu);
+        // At a kink any force up to its weight.
+        const double mu =
+          g(i) - S_s(i) - xi(i) - bounds.kinks.derivative(i, s(i));
+        violation =
+          std::max(violation,
+                   s(i) != upper(i)    ? std::abs(mu) :
+                   bounds.kinks.has(i) ? std::abs(mu) - bounds.kinks.weight(i) :
+                                         -mu);
         largest_force = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
         state.n_active += s(i) == upper(i);
@@ -165,7 +172,7 @@ namespace Debond
     const BoundQPResult   qp =
       solve_bound_qp(M,
                      r,
-                     upper,
+                     bounds,
                      active,
                      is_trial && tolerance >= Tolerance::rough_majorant ?
                        tolerance :

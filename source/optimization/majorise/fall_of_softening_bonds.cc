@@ -18,12 +18,23 @@ namespace Debond
 
 
 
+  Eigen::VectorXd
+  CondensedProblem::slope_of_phi() const
+  {
+    Eigen::VectorXd result = phi.subgradient(s);
+    for (Eigen::Index i = 0; i < bounds.kinks.weight.size(); ++i)
+      result(i) += bounds.kinks.derivative(i, s(i));
+    return result;
+  }
+
+
+
   void
   CondensedProblem::fall(const Eigen::VectorXd &before)
   {
     std::vector<unsigned int> free;
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (s(i) < upper(i))
+      if (s(i) != upper(i))
         free.push_back(i);
     // All in contact: the majorant has said all.
     if (free.empty())
@@ -32,7 +43,7 @@ namespace Debond
     // than that of the majorant.
     Eigen::MatrixXd A = S;
     A += phi.second_derivative(s);
-    const Eigen::VectorXd force = g - S * s - phi.subgradient(s);
+    const Eigen::VectorXd force = g - S * s - slope_of_phi();
     const DenseCholesky   factor_of_J(A(free, free));
     Eigen::VectorXd       way;
     if (factor_of_J.is_positive_definite())
@@ -77,12 +88,12 @@ namespace Debond
     const double size = ds.lpNorm<Eigen::Infinity>();
     if (!(size > 0.))
       return;
-    // Up to where the first component meets its bound: the active set is a
-    // matter of the next majorant.
+    // Up to where the first component meets its bound or kink: the active set
+    // is a matter of the next majorant.
     double limit = infinity;
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (ds(i) > 0.)
-        limit = std::min(limit, (upper(i) - s(i)) / ds(i));
+      if (const double way = upper(i) - s(i); ds(i) * way > 0.)
+        limit = std::min(limit, way / ds(i));
     const Eigen::VectorXd start     = s;
     const Eigen::VectorXd rigid     = N.cols() > 0 ?
                                         Eigen::VectorXd(N * (N.transpose() * ds)) :
@@ -90,8 +101,12 @@ namespace Debond
     const double          work      = ds.dot(g - S * s);
     const double          stiffness = ds.dot(S * ds);
     const auto            slope_at  = [&](const double t) {
-      s = (start + t * ds).cwiseMin(upper);
-      return t * stiffness - work + phi.subgradient(s).dot(ds);
+      s = start + t * ds;
+      // Rounding must not lead beyond.
+      for (Eigen::Index i = 0; i < s.size(); ++i)
+        if ((s(i) > upper(i)) != (start(i) > upper(i)))
+          s(i) = upper(i);
+      return t * stiffness - work + slope_of_phi().dot(ds);
     };
     // J along the line is a parabola as long as no point leaves its piece. From
     // piece to piece, to where the slope is zero.

@@ -11,6 +11,9 @@ namespace Debond
   {
     /// Far more than scenes need.
     constexpr unsigned int maximum_proximal_steps = 500;
+
+    /// Of the balance of forces, each of few operations.
+    constexpr unsigned int most_sweeps = 10000;
   } // namespace
 
 
@@ -27,20 +30,60 @@ namespace Debond
 
 
 
+  std::optional<Eigen::VectorXd>
+  CondensedProblem::unbalanced_by_friction(const Eigen::MatrixXd &towards,
+                                           const Eigen::MatrixXd &motions,
+                                           const Eigen::VectorXd &forces) const
+  {
+    // Least squares with pressures and with frictions up to their weights, one
+    // after the other. What is left is a motion along which the forces do more
+    // work than friction takes.
+    Eigen::VectorXd rest   = forces;
+    Eigen::VectorXd amount = Eigen::VectorXd::Zero(towards.cols());
+    for (unsigned int k = 0; k < most_sweeps; ++k)
+      {
+        const Eigen::VectorXd before = rest;
+        for (Eigen::Index i = 0; i < towards.cols(); ++i)
+          {
+            const bool   has_kink = bounds.kinks.has(i);
+            const auto   column   = has_kink ? motions.col(i) : towards.col(i);
+            const double square   = column.squaredNorm();
+            if (square == 0.)
+              continue;
+            const double most = has_kink ? bounds.kinks.weight(i) : infinity;
+            const double next =
+              std::clamp(amount(i) + column.dot(rest) / square,
+                         has_kink ? -most : 0.,
+                         most);
+            rest -= (next - amount(i)) * column;
+            amount(i) = next;
+          }
+        if ((rest - before).norm() <= Tolerance::epsilon * forces.norm())
+          return rest;
+      }
+    return {};
+  }
+
+
+
   bool
   CondensedProblem::falls_along(const Eigen::MatrixXd &Z) const
   {
     Eigen::MatrixXd towards  = Z.transpose();
     const double    furthest = towards.colwise().norm().maxCoeff();
     for (Eigen::Index i = 0; i < towards.cols(); ++i)
-      if (std::isinf(upper(i)) ||
+      if (std::isinf(upper(i)) || bounds.kinks.has(i) ||
           towards.col(i).norm() <= Tolerance::towards_foundation * furthest)
         towards.col(i).setZero();
     // The forces along Z are the sum of what pressures of the foundation
     // balance and of the nearest motion p along which no node comes to the
-    // foundation. They do work along p, and nothing else holds it.
+    // foundation. They do work along p, and nothing else holds it but friction,
+    // which takes its weight times the way.
+    const Eigen::VectorXd                forces = Z.transpose() * r;
     const std::optional<Eigen::VectorXd> unbalanced =
-      project_on_polar_cone(towards, Z.transpose() * r);
+      bounds.kinks.weight.size() == 0 ?
+        project_on_polar_cone(towards, forces) :
+        unbalanced_by_friction(towards, Z.transpose(), forces);
     return unbalanced && unbalanced->norm() > Tolerance::balanced * r.norm();
   }
 
@@ -64,7 +107,7 @@ namespace Debond
     for (unsigned int k = 0; k < maximum_proximal_steps; ++k)
       {
         const BoundQPResult qp = solve_bound_qp(
-          proximal, r + delta * Z * (Z.transpose() * x), upper, active);
+          proximal, r + delta * Z * (Z.transpose() * x), bounds, active);
         result.active_set_steps += qp.steps;
         if (!can_be_verified(qp.status))
           {
@@ -79,8 +122,14 @@ namespace Debond
             std::max(Tolerance::balanced * r.norm(),
                      Tolerance::row_of_product * stiffness * x.norm()))
           {
+            // So far away that rounding outweighs the forces nothing is known
+            // to be balanced by friction.
+            const bool is_lost =
+              bounds.kinks.weight.size() > 0 &&
+              Tolerance::row_of_product * stiffness * x.norm() >
+                Tolerance::lost_beside_friction * r.norm();
             s             = x;
-            result.status = qp.status;
+            result.status = is_lost ? SolverStatus::comes_off : qp.status;
             return result;
           }
         if (!extrapolate(delta, step, last_step, x))
@@ -121,15 +170,15 @@ namespace Debond
     if (repeats && held(way) > loose_stiffness * way.squaredNorm())
       further = delta * way.squaredNorm() / held(way);
     else if (repeats)
-      {
-        // Without a node that comes to the foundation this has no end.
-        if (way.maxCoeff() <= least)
-          return false;
-        further = std::numeric_limits<double>::max();
-      }
+      further = infinity;
+    // To the next bound, or kink ahead.
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (way[i] > least)
+      if (bounds.kinks.has(i) ? way[i] * (upper[i] - x[i]) > 0. :
+                                way[i] > least)
         further = std::min(further, (upper[i] - x[i]) / way[i]);
+    // Without any this has no end.
+    if (std::isinf(further))
+      return false;
     x += further * way;
     return true;
   }

@@ -157,9 +157,10 @@ namespace Debond
             if (inner.status == SolverStatus::interrupted)
               return finish(SolverStatus::interrupted, left());
             if (inner.status == SolverStatus::comes_off)
-              return finish(SolverStatus::comes_off,
-                            "neither the bonds that are left nor the "
-                            "foundation hold the body: J falls without end.");
+              return finish(
+                SolverStatus::comes_off,
+                "neither the bonds and friction that are left nor the "
+                "foundation hold the body: J falls without end.");
             if (!can_be_verified(inner.status))
               return finish(SolverStatus::quadratic_program,
                             unsolved(iteration, inner_tolerance));

@@ -80,7 +80,8 @@ namespace Debond
         , solver(correction_solver)
         , interruption(interrupted_by)
         , normals(problem.unknowns().contact().dofs())
-        , upper(problem.unknowns().contact().boundary().upper_bounds())
+        , bounds(problem.unknowns().contact().boundary().upper_bounds(),
+                 phi.kinks())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
         , f(load_at(problem, factors))
@@ -89,7 +90,7 @@ namespace Debond
         // and mostly the last one.
         const Eigen::VectorXd s = problem.unknowns().contact().trace(start);
         for (unsigned int i = 0; i < s.size(); ++i)
-          active.push_back(s(i) == upper(i));
+          active.push_back(bounds.state(i, s(i)));
         // The energy that rounding of w leaves of a lifting that w undoes.
         constexpr long double epsilon  = Tolerance::epsilon;
         const DofVector       diagonal = problem.diagonal();
@@ -117,43 +118,44 @@ namespace Debond
         // Active sets for s <= 0: each pass solves for equilibrium with the
         // active nodes at the foundation, then releases nodes that the
         // foundation would have to pull and takes nodes that would penetrate
-        // it.
+        // it. With friction the same is done for what sticks.
         ActiveSetRule rule;
         while (result.systems < maximum_refinement_systems)
           {
             ++result.systems;
             for (unsigned int i = 0; i < normals.size(); ++i)
-              if (active[i] != 0)
-                u(normals[i]) = lifting(normals[i]) + upper(i);
+              if (is_active(active[i]))
+                u(normals[i]) = lifting(normals[i]) + bounds.place(i);
             // The preconditioner is made anew for each active set, while u
             // stays where the last one has led it.
-            solver.prepare(majorant.E, active);
+            ActiveSet held_at_contact;
+            for (const char state : active)
+              held_at_contact.push_back(is_active(state));
+            solver.prepare(majorant.E, held_at_contact);
             if (!solve())
               return false;
 
             // A penetration counts only above a hundredth of the rounding of
             // double precision, and a force only above the largest residual
             // that the free unknowns have kept.
-            const Eigen::VectorXd excess =
-              to_foundation().template cast<double>() - upper;
-            const ExtendedVector &r  = last_force;
-            Eigen::VectorXd       mu = at_contact(r).template cast<double>();
+            const ExtendedVector  exact    = to_foundation();
+            const Eigen::VectorXd s        = exact.template cast<double>();
+            const ExtendedVector &r        = last_force;
             long double           residual = 0.;
             std::vector<char>     held(static_cast<std::size_t>(u.size()), 0);
             for (unsigned int i = 0; i < normals.size(); ++i)
-              if (active[i] != 0)
+              if (is_active(active[i]))
                 held[normals[i]] = 1;
-              else
-                mu(i) = 0.;
             for (unsigned int i = 0; i < r.size(); ++i)
               if (held[i] == 0)
                 residual = std::max(residual, std::abs(r(i)));
             // All wrong nodes are exchanged at once, and one by one if that
             // continues for too long, which ends after finitely many steps.
-            if (rule.update(excess,
-                            mu,
+            if (rule.update(bounds,
+                            s,
+                            at_contact(r).template cast<double>(),
                             0.01 * Tolerance::epsilon *
-                              excess.lpNorm<Eigen::Infinity>(),
+                              s.lpNorm<Eigen::Infinity>(),
                             static_cast<double>(residual),
                             active) == 0)
               return true;
@@ -170,7 +172,11 @@ namespace Debond
         for (unsigned int i = 0; i < point.size(); ++i)
           point(i) = static_cast<double>(u(i) - lifting(i));
         for (unsigned int i = 0; i < normals.size(); ++i)
-          point(normals[i]) = std::min(point(normals[i]), upper(i));
+          {
+            double &s = point(normals[i]);
+            if (is_active(active[i]) || bounds.excess(i, s, active[i]) > 0.)
+              s = bounds.place(i);
+          }
         return point;
       }
 
@@ -249,7 +255,7 @@ namespace Debond
         ExtendedVector       r   = f - A * u;
         const ExtendedVector E_s = E_times(to_foundation());
         for (unsigned int i = 0; i < normals.size(); ++i)
-          r(normals[i]) += majorant.b(i) - E_s(i);
+          r(normals[i]) += majorant.b(i) - E_s(i) + bounds.force(i, active[i]);
         return r;
       }
 
@@ -257,7 +263,7 @@ namespace Debond
       release_held(ExtendedVector &v) const
       {
         for (unsigned int i = 0; i < normals.size(); ++i)
-          if (active[i] != 0)
+          if (is_active(active[i]))
             v(normals[i]) = 0.;
       }
 
@@ -347,7 +353,7 @@ namespace Debond
       CorrectionSolver                                   &solver;
       const Interruption                                 &interruption;
       const std::vector<dealii::types::global_dof_index> &normals;
-      const Eigen::VectorXd                               upper;
+      const Bounds                                        bounds;
 
       const ExtendedVector lifting;
       ExtendedVector       u; ///< the displacements, lifting and all

@@ -25,6 +25,8 @@ namespace Debond
     std::vector<unsigned int> bonds;
     Eigen::VectorXd           weights;
 
+    Kinks friction = {}; ///< kinks()
+
     explicit SeparableEnergy(const std::vector<PiecewiseEnergy> &f)
       : f(f)
     {}
@@ -49,6 +51,12 @@ namespace Debond
 
     PieceState
     state(const VectorView &s) const;
+
+    const Kinks &
+    kinks() const override
+    {
+      return friction;
+    }
 
     double
     change(const VectorView &s) const override;

@@ -3,6 +3,7 @@
 #define debond_optimization_majorise_bound_qp_h
 
 #include <debond/linear_algebra/bordered_cholesky.h>
+#include <debond/optimization/kinks.h>
 #include <debond/optimization/status.h>
 
 #include <limits>
@@ -12,30 +13,108 @@ namespace Debond
   /// Factorisations after which a solver gives up.
   constexpr unsigned int maximum_active_set_steps = 10000;
 
-  /// Which bounds are active, by index.
+  /// Which bounds and kinks are active, by index: is_active(). Of a kink that
+  /// is not, 0 says that x is below it, and above_kink that x is above.
   using ActiveSet = std::vector<char>;
+
+  constexpr char above_kink = 2;
+
+  inline bool
+  is_active(const char entry)
+  {
+    return entry == 1;
+  }
+
+
+
+  /// x <= upper, and kinks where that is infinite.
+  struct Bounds
+  {
+    Bounds(const Eigen::VectorXd &upper, const Kinks &kinks = {})
+      : kinks(kinks)
+      , place(upper)
+    {
+      for (Eigen::Index i = 0; i < kinks.weight.size(); ++i)
+        if (kinks.has(i))
+          place(i) = kinks.place(i);
+    }
+
+    /// The entry of the active set for a component at @p x_i.
+    char
+    state(const Eigen::Index i, const double x_i) const
+    {
+      return x_i == place(i) ? 1 : x_i > place(i) ? above_kink : 0;
+    }
+
+    /// How far @p x_i is outside of the side that @p state says.
+    double
+    excess(const Eigen::Index i, const double x_i, const char state) const
+    {
+      return state == above_kink ? place(i) - x_i : x_i - place(i);
+    }
+
+    /// The force of the kink on a component that is not at it.
+    double
+    force(const Eigen::Index i, const char state) const
+    {
+      return !kinks.has(i) || is_active(state) ? 0. :
+             state == above_kink               ? -kinks.weight(i) :
+                                                 kinks.weight(i);
+    }
+
+    /// By how much a force, without that of the kink, holds a component that is
+    /// active.
+    double
+    hold(const Eigen::Index i, const double force_i) const
+    {
+      return kinks.has(i) ? kinks.weight(i) - std::abs(force_i) : force_i;
+    }
+
+    /// The state of a component that leaves its place.
+    char
+    left_to(const Eigen::Index i, const double force_i) const
+    {
+      return kinks.has(i) && force_i > 0. ? above_kink : 0;
+    }
+
+    /// The nearest point on the sides that @p active says.
+    Eigen::VectorXd
+    projected(Eigen::VectorXd x, const ActiveSet &active) const
+    {
+      for (Eigen::Index i = 0; i < x.size(); ++i)
+        if (excess(i, x(i), active[i]) > 0. ||
+            (kinks.has(i) && is_active(active[i])))
+          x(i) = place(i);
+      return x;
+    }
+
+    const Kinks     kinks;
+    Eigen::VectorXd place; ///< of the bound or kink
+  };
 
 
 
   /**
-   * The rule by which active-set methods for x <= b go on: bounds that are
-   * exceeded enter, those with a negative multiplier leave, all at once as in
-   * the primal-dual active set method (Hintermueller, Ito, Kunisch, SIAM J.
-   * Optim. 13, 2002). Once the number of wrong indices has not fallen for long,
-   * only the first of them changes, which ends after finitely many steps for
-   * positive definite matrices (Murty, Math. Programming 7, 1974).
+   * The rule by which active-set methods go on: bounds that are exceeded and
+   * kinks that are passed enter, those that do not hold leave, kinks to the
+   * side that the force points to, all at once as in the primal-dual active set
+   * method (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13, 2002). Once the
+   * number of wrong indices has not fallen for long, only the first of them
+   * changes, which ends after finitely many steps for positive definite
+   * matrices (Murty, Math. Programming 7, 1974).
    */
   class ActiveSetRule
   {
   public:
-    /// @p excess is x - b outside the active set, @p mu the multipliers in it;
-    /// a sign counts only beyond @p excess_noise and @p mu_noise. Returns the
-    /// number of wrong indices.
+    /// By a point and the @p force on its active components, without that of
+    /// kinks; a sign counts only beyond the noise of each. Returns the number
+    /// of wrong indices.
     unsigned int
-    update(const Eigen::VectorXd &excess,
-           const Eigen::VectorXd &mu,
-           const double           excess_noise,
-           const double           mu_noise,
+    update(const Bounds          &bounds,
+           const Eigen::VectorXd &x,
+           const Eigen::VectorXd &force,
+           const double           x_noise,
+           const double           force_noise,
            ActiveSet             &active);
 
     /// Returns whether the number of wrong indices has not fallen for long.
@@ -61,17 +140,21 @@ namespace Debond
     double operations = 0.;
 
     Eigen::VectorXd x;
-    Eigen::VectorXd mu; ///< multipliers, zero where inactive
+    Eigen::VectorXd mu; ///< multipliers, zero where inactive; at kinks forces
   };
 
 
 
   /**
-   * min 1/2 x'M x - r'x subject to x <= b for a dense symmetric positive
-   * definite M, started at @p active, which is updated. Each step solves on
-   * the free components with a Cholesky factorisation, or by that of a step
-   * before. A @p factor can be handed on from problem to problem, whose
+   * min 1/2 x'M x - r'x + kinks(x) subject to x <= b for a dense symmetric
+   * positive definite M, started at @p active, which is updated. Each step
+   * solves on the free components with a Cholesky factorisation, or by that of
+   * a step before. A @p factor can be handed on from problem to problem, whose
    * matrices may differ in few rows.
+   *
+   * A component with a kink is at it, which is active, or on a given side of
+   * it, where its term is a force, with which M stays what it is. There are no
+   * bounds at kinks.
    *
    * Wrong indices are exchanged by ActiveSetRule. Matrices of slender bodies,
    * where fourth derivatives count, can make that wander; then projected Newton
@@ -85,7 +168,7 @@ namespace Debond
   BoundQPResult
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
                  const Eigen::VectorXd                   &r,
-                 const Eigen::VectorXd                   &b,
+                 const Bounds                            &bounds,
                  ActiveSet                               &active,
                  const double                             tolerance = 0.,
                  BorderedCholesky                        *factor    = nullptr);

@@ -84,8 +84,12 @@ namespace Debond
     void
     fall(const Eigen::VectorXd &before);
 
+    /// Phi's subgradient() with the forces of the kinks that s is not at.
+    Eigen::VectorXd
+    slope_of_phi() const;
+
     /// From s along @p ds to the first minimum of J, or to where s meets a
-    /// bound.
+    /// bound or a kink.
     void
     fall_along(const Eigen::VectorXd &ds);
 
@@ -104,9 +108,17 @@ namespace Debond
     }
 
     /// Returns whether the majorant has no minimum: no pressures of the
-    /// foundation balance what its forces do along the columns of Z.
+    /// foundation, and no friction, balance what its forces do along the
+    /// columns of Z.
     bool
     falls_along(const Eigen::MatrixXd &Z) const;
+
+    /// What pressures along the columns of @p towards and friction along those
+    /// of @p motions leave of @p forces; nothing if it was not found.
+    std::optional<Eigen::VectorXd>
+    unbalanced_by_friction(const Eigen::MatrixXd &towards,
+                           const Eigen::MatrixXd &motions,
+                           const Eigen::VectorXd &forces) const;
 
     /**
      * Minimises the majorant by proximal steps along the columns of Z, which
@@ -142,8 +154,9 @@ namespace Debond
     const MatrixView          S;
     const double              stiffness;
     const VectorView          g;
-    const Eigen::VectorXd     upper;
     const PiecewiseQuadratic &phi;
+    const Bounds              bounds; ///< with Phi's kinks
+    const Eigen::VectorXd    &upper;  ///< Bounds::place
     Eigen::VectorXd          &s;
 
     /// The stiffness by which the majorant's bonds hold a rigid motion at most

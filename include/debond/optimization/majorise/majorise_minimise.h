@@ -75,7 +75,7 @@ namespace Debond
     /// terms.
     double tolerance = 1e-10;
 
-    unsigned int maximum_iterations = 200;
+    unsigned int maximum_iterations = 5000;
 
     /// Violations below are rounding, of forces that may act at other times:
     /// without any force there is nothing else that they are small beside.
