@@ -25,6 +25,8 @@ LARGEST_SHOWN = 0.06
 CUT = 0.995
 # Up to this part of the largest displacement of a load path, openings are rounding.
 NEGLIGIBLE = 1e-6
+# Beside the other sign, values up to this part have no colours of their own.
+SMALL_SIDE = 0.01
 PIXELS = 1000.  # about the width of a body
 MOST_VECTORS = 20000  # more polygons are an image in SVG files, too
 MOST_SPLIT = 8000  # cells are drawn as about so many triangles, if they are fewer
@@ -32,7 +34,7 @@ LONGEST = 12.  # what is longer than so many times its height is stretched
 FROM_ABOVE, FROM_BELOW = (-65, 25), (-65, -25)  # azimuth and elevation
 STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
           "broken": "tab:red", "broken but closed": "tab:orange", "free": "tab:gray",
-          "held": "0.8"}
+          "held": "0.8", "slides": "tab:cyan"}
 PARTS = "damage", "shear_damage", "mode_mixity"  # fields from 0 to 1
 OTHER_STATE = "tab:purple"
 FORCES = {("mm", "MPa"): "N", ("mm", "N/mm²"): "N", ("mm", "GPa"): "kN",
@@ -95,6 +97,7 @@ class Run:
         self.factor = max(("factor", "displacement_factor"), key=lambda name: (
             numpy.ptp(path.get(name, 0.)) > 0, numpy.any(path.get(name, 1.) != 1)))
         n = len(path.get("step", []))
+        of_peak = ""
         if step == "peak":
             peak = self.summary.get("load_path", {}).get("peak")
             if not peak:
@@ -102,6 +105,7 @@ class Run:
             # That may be inside of a step: the nearest one of the table.
             step = 1 + int(numpy.argmin(abs(
                 path["displacement_factor"] - peak["displacement_factor"])))
+            of_peak = f", the largest force is at {peak['displacement_factor']:.4g}"
         self.step = step
         if step is not None and not 1 <= step <= n:
             raise BadInput(f"{directory} has no step {step}, " + (
@@ -109,7 +113,7 @@ class Run:
         if n:
             words, factor = words_for(self.factor, self.units), path[self.factor]
             shown = step or n
-            self.title = f"step {shown} of {n}, {words} {factor[shown - 1]:.4g}\n"
+            self.title = f"step {shown} of {n}, {words} {factor[shown - 1]:.4g}{of_peak}\n"
         # What load_path.csv knows of the largest displacement in all steps.
         self.largest = max([0., *(
             numpy.nanmax(abs(values)) for name, values in path.items()
@@ -122,6 +126,9 @@ class Run:
                 values[abs(values) < NEGLIGIBLE * self.largest] = 0.
             state[(state == "broken") & (self.contact.at_nodes("gap") == 0)] = (
                 "broken but closed")
+            if "slides" in fields:
+                state[(state == "contact") & (self.contact.at_nodes("slides") > 0)] = (
+                    "slides")
 
     def files(self, name):
         file, entry = name, name.capitalize()
@@ -197,15 +204,17 @@ def colour(axes, values, title, signed="RdBu_r", usual=0., limits=None):
         low, top = (largest if cut <= 0 or largest < 1.2 * cut else cut
                     for sizes in (-values, values)
                     for cut, largest in [(numpy.quantile(sizes, CUT), sizes.max())])
-        cut = numpy.array([values < -low, values > top])
+        # A side of hardly any size has no colours of its own, and loses nothing.
+        below, above = low > SMALL_SIDE * top, top > SMALL_SIDE * low
+        cut = numpy.array([(values < -low) & below, (values > top) & above])
         if cut.any():
             least, most = (0. if is_rounding(end, size) else end
                            for end in (values.min(), values.max()))
             title += (f"\n{cut.sum() / len(values):.1%} cut off, the values are "
                       f"{least:.3g} to {most:.3g}")
-        scale = ScalarMappable(colors.Normalize(0., top))
-        if low > 1e-9 * top:
-            low, top = (max(side, 1e-3 * max(low, top)) for side in (low, top))
+        scale = ScalarMappable(colors.Normalize(0., top)) if above else (
+            ScalarMappable(colors.Normalize(-low, 0.), "viridis_r"))
+        if below and above:
             scale = ScalarMappable(colors.TwoSlopeNorm(0., -low, top), signed)
             ticks = [-low, -low / 2, 0., top / 2, top][
                 ::1 if axes[0].get_gridspec().ncols == 1 else 2]

@@ -78,6 +78,6 @@ namespace Debond
         "Condensation: rounding has made the elasticity matrix indefinite (" +
         where +
         "): the body is too slender, or its moduli are too far apart, for "
-        "double precision with this mesh. Longer cells lose fewer digits.")
+        "double precision with this mesh. Another number of cells may do.")
   {}
 } // namespace Debond

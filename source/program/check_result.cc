@@ -271,7 +271,7 @@ namespace Debond
         result.notes.push_back(
           "all loads act where the body cannot move: on supports, or along a "
           "contact boundary with Contact law/Tangential displacement = fixed");
-      if (!scene.parameters().law.pieces.empty())
+      if (scene.parameters().law.name != "none")
         append(bond_notes(
                  scene.problem().unknowns().dof_handler().get_triangulation(),
                  result.verification.nodes),

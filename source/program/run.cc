@@ -246,7 +246,7 @@ namespace Debond
              ""));
       else if (interrupted)
         print("the search or the proof was interrupted; the result is what "
-              "it had found");
+              "it had found, and --restart goes on from there");
       if (!output_error.empty())
         {
           print(output_error);

@@ -65,9 +65,12 @@ namespace Debond
     , go_to(go_to)
     , is_homogeneous(
         !scene.problem().unknowns().has_gap() &&
+        scene.adhesion().friction().empty() &&
         scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
     , is_bounded(is_homogeneous && !scene.parameters().load_path.bonds_heal &&
                  !scene.adhesion().points().depends_on_mode())
+    , noise(scene.least_force() *
+            scene.problem().unknowns().lifting(1.).l1_norm())
   {}
 
 
@@ -89,7 +92,7 @@ namespace Debond
     const bool is_suspect =
       is_homogeneous || step == nullptr ||
       std::abs(step->state.unit_displacement_work) <
-        std::abs(begun.step.state.unit_displacement_work) ||
+        std::abs(begun.step.state.unit_displacement_work) - noise ||
       step->state.broken_part > begun.step.state.broken_part;
     if (!is_suspect || (!is_homogeneous && begun.step.step == 0) ||
         last.displacements == begun.step.displacement_factor)
@@ -145,7 +148,8 @@ namespace Debond
   bool
   LargestForce<dim>::is_resolved(const double bound, const Peak &peak) const
   {
-    return bound <= (1. + scene.parameters().load_path.resolve) * peak.force();
+    return bound <=
+           (1. + scene.parameters().load_path.resolve) * peak.force() + noise;
   }
 
 

@@ -19,9 +19,9 @@ namespace Debond
    * more than `Load path/Resolve`. From d = 0 a small part of the way tells F_0
    * / d_0.
    *
-   * With other loads or gaps, bonds that heal, and energies that depend on the
-   * mode this is no bound, and tells only where to look; with the first two
-   * only steps in which F falls or bonds break are halved.
+   * With other loads, gaps or friction, bonds that heal, and energies that
+   * depend on the mode this is no bound, and tells only where to look; with the
+   * first three only steps in which F falls or bonds break are halved.
    */
   template <int dim>
   class LargestForce
@@ -82,6 +82,9 @@ namespace Debond
     const GoTo        go_to;
     const bool        is_homogeneous;
     const bool        is_bounded; ///< by the slopes of its states
+
+    /// What forces that are rounding, as when all has come off, may do.
+    const double noise;
   };
 
   /// The largest force of steps between which nothing is known.
