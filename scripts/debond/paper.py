@@ -32,6 +32,7 @@ SCENES = [
     ("load-path-690", "80, 8", "m, GPa", {"load_path": "load-path-80x8"}),
     ("cookbook/tape", "", "mm, MPa", {"body": "cookbook-tape",
                                       "contact": "cookbook-tape-front"}),
+    ("cookbook/cattaneo", "", "mm, MPa", {"contact": "cookbook-cattaneo"}),
     *((f"cookbook/{name}", "", "mm, MPa", {"body": f"cookbook-{name}"})
       for name in ("ring", "double-cantilever", "bimaterial-strip", "peel", "blister",
                    "wafer", "delamination")),

@@ -128,6 +128,29 @@ def hertz_cylinder(run):
     yield "half width of contact", half, edge
 
 
+@problem("Cattaneo, Mindlin: cylinders that slide", "Johnson, Contact Mechanics (1985), 7.2", 0.03)
+def cattaneo(run):
+    results = run("cookbook/cattaneo")
+    path, R, mu = results.load_path, 20., 0.3
+    force = abs(path["reaction_top_y"])
+    half = numpy.sqrt(4. * force * R / (math.pi * 1. / (2. * (1. - 0.3**2))))
+    stick = half * numpy.sqrt(1. - path["reaction_top_x"] / (mu * force))
+    # Parts of the boundary of the length 16, and half a cell on each side.
+    yield "half width of contact", half[0], 8. * path["contact_part"][0]
+    for k in (1, 2, 3):
+        yield (f"half width that sticks, shift {0.1 * path['displacement_factor'][k]:.2g}", stick[k],
+               8. * path["stick_part"][k])
+
+
+@problem("square on a rough plane", "code_aster V6.04.128, SSNV128", 0.05)
+def rough_square(run):
+    profile = run("published/rough-square").profile
+    for x, stated in ((0., 2.86e-5), (0.00125, 2.72e-5), (0.005, 2.28e-5), (0.0075, 1.98e-5),
+                      (0.01125, 1.50e-5)):
+        yield (f"displacement at {x:g} m", stated, numpy.interp(x, profile["x"],
+                                                               profile["slip_x"]))
+
+
 @problem("Hertz, sphere on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2", 0.01)
 def hertz_sphere(run):
     R, results = 10., run("published/hertz-sphere")

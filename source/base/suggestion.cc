@@ -55,7 +55,6 @@ namespace Debond
     if (path == "Study")
       return "; this is a study: run scripts/study";
     static const std::map<std::string, std::string> absent = {
-      {"friction|coulomb", "friction"},
       {"plastic|yield|hardening", "plasticity"},
       {"visc|creep|damping", "viscosity"},
       {"density|\\bmass|veloc|accelerat|time step",
@@ -64,7 +63,9 @@ namespace Debond
       {"penalt", "penalty: contact is exact"},
       {"moment|torque",
        "moments as loads: a traction that varies, such as 3*(y - 1); 0, has one"},
-      {"fatigue", "fatigue"}};
+      {"fatigue", "fatigue"},
+      {"\\btie\\b", "ties: regions of one mesh hold together without"},
+      {"\\b(end )?time\\b", "time: loads grow along Load path/Factors"}};
     for (const auto &[words, what] : absent)
       if (std::regex_search(path, std::regex(words, std::regex::icase)))
         return "; Debond has no " + what +
@@ -87,7 +88,7 @@ namespace Debond
     // translated before names are compared. They are regular expressions on the
     // whole path, in which a name begins after the slash.
     static const std::map<std::string, std::string> synonyms = {
-      {"\\bg_?i?c\\b|toughness|critical energy", "Fracture energy"},
+      {"\\bg_?i?_?c\\b|toughness|critical energy", "Fracture energy"},
       {"\\bcte\\b|/alpha$", "Thermal expansion"},
       {"/(e|elastic\\w* modulus|stiffness)$", "Young modulus"},
       {"/nu$", "Poisson ratio"},
@@ -95,6 +96,8 @@ namespace Debond
       {"symmetry", "Roller boundaries"},
       {"tangential stiffness|shear strength|/k_?(ss|tt|t)$",
        "Bond shear stiffness"},
+      {"/k_?nn?$", "Bond stiffness"},
+      {"/(mu|friction|[a-z ]*coulomb[a-z ]*)$", "Friction coefficient"},
       {"mode (ii|2) energy|\\bg_?ii_?c\\b", "Shear fracture energy"},
       {"cohesive", "Bond"}};
     std::string translated = path;

@@ -80,6 +80,10 @@ namespace Debond
                "needs bonds whose traction does not fall but at once, these "
                "soften",
                {"Contact law/Law"});
+        refuse(p.friction.is_somewhere(),
+               "is for bodies without friction",
+               {"Contact law/Friction bound",
+                "Contact law/Friction coefficient"});
         refuse(p.shear.is_somewhere,
                "needs bonds along the normal alone",
                {"Contact law/Tangential displacement"});

@@ -650,18 +650,53 @@ namespace Debond
         if (given.conditions.fixes_tangential(face.id))
           return r_nu * normal;
         // On the low side of an interface bonds pull the other way.
+        const double side_of_bonds   = normal * face.normal > 0. ? 1. : -1.;
         dealii::Tensor<1, dim> along = r - (r * normal) * normal;
         if (point.shears())
           {
             const dealii::Tensor<1, dim> slip = point.jump(s).tangential;
-            along -=
-              (normal * face.normal > 0. ? 1. : -1.) * traction.tangential;
+            along -= side_of_bonds * traction.tangential;
             if (slip.norm() > 0.)
               along /= stretched(slip / slip.norm(),
                                  traction.tangential.norm(),
                                  slip.norm());
           }
+        // Friction balances what it may.
+        if (const double size = along.norm(); size > 0.)
+          {
+            const dealii::Tensor<1, dim> direction = along / size;
+            const Interval               friction =
+              friction_along(face, coordinates, side_of_bonds * direction);
+            along -=
+              std::clamp(size, friction.lower, friction.upper) * direction;
+          }
         return along + r_nu * normal;
+      }
+
+      /// What friction may bear along a face at a place: between its vertices
+      /// it is linear.
+      Interval
+      friction_along(const typename ContactBoundary<dim>::Face &face,
+                     const std::array<double, dim>             &coordinates,
+                     const dealii::Tensor<1, dim>              &direction) const
+      {
+        const Kinks &friction = given.adhesion.kinks();
+        Interval     sum      = {0., 0.};
+        for (unsigned int k = 0; k < dim; ++k)
+          if (!face.is_held(k))
+            for (const auto &tangent : boundary.nodes[face.nodes[k]].tangents)
+              if (!tangent.is_held && friction.has(tangent.index))
+                {
+                  const double bound = friction.weight(tangent.index) *
+                                       coordinates[k] /
+                                       boundary.nodes[face.nodes[k]].measure;
+                  const double way =
+                    (s(tangent.index) - friction.place(tangent.index)) *
+                    (tangent.direction * direction);
+                  sum.lower += way > 0. ? bound : -bound;
+                  sum.upper += way < 0. ? -bound : bound;
+                }
+        return sum;
       }
 
       /// r without the directions that supports hold.

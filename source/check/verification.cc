@@ -158,6 +158,7 @@ namespace Debond
     void
     set_tractions(const unsigned int            i,
                   const AdhesionIntegral<dim>  &adhesion,
+                  const Eigen::VectorXd        &forces,
                   const Jump<dim>              &by_law,
                   const dealii::Tensor<1, dim> &slip,
                   Verification<dim>            &result)
@@ -181,6 +182,15 @@ namespace Debond
              bonds.shear * node.bond_stiffness * (1. - node.shear_damage) :
              0.) *
             slip));
+      if (!node.slides)
+        return;
+      // Nor does the law say what friction bears where nothing slides.
+      const auto &boundary_node     = adhesion.contact_boundary().nodes[i];
+      result.shear_tractions.back() = {};
+      for (const auto &tangent : boundary_node.tangents)
+        if (!tangent.is_held)
+          result.shear_tractions.back() -=
+            forces(tangent.index) / boundary_node.measure * tangent.direction;
     }
 
 
@@ -388,7 +398,15 @@ namespace Debond
           for (const auto &tangent :
                adhesion.contact_boundary().nodes[i].tangents)
             if (!tangent.is_held)
-              result.nodes[i].shear_damage = shear_damages[tangent.index];
+              {
+                const Kinks &friction        = adhesion.kinks();
+                result.nodes[i].shear_damage = shear_damages[tangent.index];
+                // What sticks is exactly where it was.
+                if (friction.has(tangent.index))
+                  result.nodes[i].slides =
+                    result.nodes[i].slides.value_or(false) ||
+                    s(tangent.index) != friction.place(tangent.index);
+              }
         }
     }
 
@@ -444,7 +462,7 @@ namespace Debond
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,
-         const AdhesionIntegral<dim> &adhesion,
+         const AdhesionIntegral<dim> &bonds,
          const DofVector             &u,
          const LoadFactors            factors,
          const double                 least_force,
@@ -468,6 +486,16 @@ namespace Debond
     const Eigen::VectorXd s            = contact.trace(u);
     const Eigen::VectorXd forces       = -contact.trace(residual);
     const DofVector       displacement = problem.unknowns().lifted(u, factors);
+    // Friction by the pressure is that of these forces, whatever the solver has
+    // taken for it.
+    std::optional<AdhesionIntegral<dim>> pressed;
+    if (bonds.friction().depends_on_pressure())
+      {
+        pressed.emplace(bonds);
+        pressed->press(
+          (s.array() >= 0.).select(forces, 0.).head(bonds.n_nodes()));
+      }
+    const AdhesionIntegral<dim> &adhesion = pressed ? *pressed : bonds;
     const std::vector<dealii::Tensor<1, dim>> slips =
       slips_of(problem.unknowns(), displacement);
 
@@ -513,7 +541,7 @@ namespace Debond
           if (!tangent.is_held)
             violation = std::max(violation, distances[tangent.index]);
         set_state(i, adhesion, scales[i], largest_s, tolerance, result);
-        set_tractions(i, adhesion, tractions[i], slips[i], result);
+        set_tractions(i, adhesion, forces, tractions[i], slips[i], result);
       }
     if (adhesion.shears())
       result.slips = slips;

@@ -243,12 +243,98 @@ namespace Debond
 
   template <int dim>
   void
+  AdhesionIntegral<dim>::set_friction(const Friction &friction)
+  {
+    rubs           = friction;
+    friction_kinks = {rubs.bound, Eigen::VectorXd::Zero(rubs.bound.size())};
+    update();
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::slide_to(const VectorView &s)
+  {
+    if (rubs.empty())
+      return;
+    BondMemory memory = broken;
+    memory.rubbed += friction_kinks.value(s);
+    memory.slipped.assign(s.data(), s.data() + s.size());
+    // Where friction depends on the pressure that of the last step is the first
+    // guess.
+    const Eigen::VectorXd weight =
+      rubs.depends_on_pressure() ? friction_kinks.weight : rubs.bound;
+    memory.pressed.assign(weight.data(), weight.data() + weight.size());
+    set_memory(memory);
+    if (!rubs.depends_on_pressure())
+      set_weights(rubs.bound);
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::press(const VectorView &forces)
+  {
+    Eigen::VectorXd weight = rubs.bound;
+    for (Eigen::Index i = 0; i < weight.size(); ++i)
+      if (rubs.coefficient(i) > 0.)
+        weight(i) += rubs.coefficient(i) * std::max(0., forces(rubs.node[i]));
+    const Eigen::VectorXd before = friction_kinks.weight;
+    set_weights(weight);
+    const double change =
+      (friction_kinks.weight - before).template lpNorm<Eigen::Infinity>();
+    return change == 0. ? 0. : change / friction_kinks.weight.maxCoeff();
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::stick()
+  {
+    set_weights((rubs.coefficient.array() > 0.)
+                  .select(std::numeric_limits<double>::max(), rubs.bound));
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::set_weights(Eigen::VectorXd weights)
+  {
+    // Bonds that hold do not rub: with the damage d of a bond, d of the
+    // boundary around it is loose (Alfano and Sacco, Int. J. Numer. Meth. Engng
+    // 68, 2006). The damage is that before the step.
+    if (rubs.is_of_damage)
+      for (Eigen::Index i = 0; i < weights.size(); ++i)
+        if (const unsigned int node = rubs.node[i];
+            node != dealii::numbers::invalid_unsigned_int)
+          if (const BondScale bonds = contact_points.bonds_at(node);
+              bonds.energy > 0.)
+            weights(i) *= bonds.law->damage(reached(node));
+    BondMemory memory = broken;
+    memory.pressed.assign(weights.data(), weights.data() + weights.size());
+    set_memory(memory);
+  }
+
+
+
+  template <int dim>
+  void
   AdhesionIntegral<dim>::set_memory(const BondMemory &memory)
   {
     // The sums at s = 0 contain what bonds have dissipated, so they follow the
     // memory.
     broken = memory;
     contact_points.set_modes(broken.mode);
+    const auto vector = [](const std::vector<double> &list) {
+      return Eigen::Map<const Eigen::VectorXd>(list.data(),
+                                               Eigen::Index(list.size()));
+    };
+    if (!broken.slipped.empty())
+      friction_kinks = {vector(broken.pressed), vector(broken.slipped)};
     update();
   }
 
@@ -267,7 +353,7 @@ namespace Debond
       return;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_unknowns());
     phi_at_zero                = value(zero);
-    if (broken.empty())
+    if (broken.reached.empty())
       return;
     // The largest memory that a node has by the points of the faces around it:
     // a node counts as broken where all of them say so that have bonds.
@@ -300,7 +386,7 @@ namespace Debond
   AdhesionIntegral<dim>::reached_at(const Face        &face,
                                     const unsigned int vertex) const
   {
-    if (broken.empty())
+    if (broken.reached.empty())
       return 0.;
     if (!face.is_held(vertex))
       return reached(face.nodes[vertex]);
@@ -323,8 +409,9 @@ namespace Debond
     });
     // What they have taken was with other energies than they have now.
     if (!broken.taken.empty())
-      sum += dissipated_energy() - energy_at_rest();
-    return sum;
+      sum += std::accumulate(broken.taken.begin(), broken.taken.end(), 0.) -
+             energy_at_rest();
+    return sum + friction_kinks.value(s) + broken.rubbed;
   }
 
 
@@ -333,9 +420,10 @@ namespace Debond
   double
   AdhesionIntegral<dim>::dissipated_energy() const
   {
-    return broken.taken.empty() ?
-             energy_at_rest() :
-             std::accumulate(broken.taken.begin(), broken.taken.end(), 0.);
+    return broken.rubbed +
+           (broken.taken.empty() ?
+              energy_at_rest() :
+              std::accumulate(broken.taken.begin(), broken.taken.end(), 0.));
   }
 
 
@@ -575,6 +663,15 @@ namespace Debond
             point.force_factor() * point.shape[k] * traction.upper;
         }
     });
+    // Friction: any force up to the bound where nothing slides, else the bound
+    // against the way.
+    for (Eigen::Index i = 0; i < friction_kinks.weight.size(); ++i)
+      {
+        const double way = s(i) - friction_kinks.place(i);
+        const double phi = friction_kinks.weight(i);
+        forces[i].lower += way > delta[i] ? phi : -phi;
+        forces[i].upper += way < -delta[i] ? -phi : phi;
+      }
     return forces;
   }
 

@@ -28,7 +28,7 @@ namespace Debond
       bool is_tangential_fixed = false;
 
       /// Bonds of one of its faces shear.
-      bool is_bonded = false;
+      bool has_tangents = false;
 
       std::vector<unsigned int> groups; ///< of its faces
       std::vector<unsigned int> nodes;  ///< of each group, or no_node
@@ -255,9 +255,8 @@ namespace Debond
               vertex.is_tangential_fixed =
                 vertex.is_tangential_fixed ||
                 conditions.fixes_tangential(faces[f].id);
-              vertex.is_bonded =
-                vertex.is_bonded || conditions.tangential(faces[f].id) ==
-                                      TangentialDisplacement::bonded;
+              vertex.has_tangents =
+                vertex.has_tangents || conditions.has_tangents(faces[f].id);
             }
       }
 
@@ -458,15 +457,16 @@ namespace Debond
         const std::vector<unsigned int> unknown =
           unknown_normals(vertex, normals, prescribed);
 
-        const bool shears = vertex.is_bonded && !vertex.is_tangential_fixed &&
+        const bool shears = vertex.has_tangents &&
+                            !vertex.is_tangential_fixed &&
                             !node_supports.is_end_of_interface(index);
         if (shears && normals.size() > 1 && prescribed.rows.size() < dim)
           throw EntryError("Contact law/Tangential displacement",
                            "contact sides of different normals meet at " +
                              point_text(vertex.position) +
-                             ", where bonds cannot shear: bonded needs "
-                             "another side there, which is no contact "
-                             "boundary, or fixed on one of the two");
+                             ", where neither bonds can shear nor friction "
+                             "resist: these need another side there, which is "
+                             "no contact boundary, or fixed on one of the two");
 
         vertex.nodes.assign(normals.size(), no_node);
         vertex.held.assign(normals.size(), 0);

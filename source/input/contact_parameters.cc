@@ -172,5 +172,36 @@ namespace Debond
       "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is");
     bind_shear_numbers(p.shear, table);
     bind_failure(p.shear, table);
+    table.bind_choice(
+      "Contact law/Friction acts",
+      p.friction.is_of_damage,
+      {{"everywhere", false}, {"where bonds are damaged", true}},
+      "Where friction is: everywhere, or where bonds are damaged in the proportion of their damage before the step of a load path with Bonds heal = false; where there are no bonds it is whole");
+    const Pattern     expression("nothing, or an expression");
+    const std::string where =
+      ". Where there is friction the body may slide, and Tangential displacement = bonded are bonds besides; expressions as in Loads";
+    const auto bind = [&](const std::string         &path,
+                          FrictionParameters::Entry &entry,
+                          const std::string         &documentation,
+                          const std::string         &units) {
+      table.bind(
+        path, entry.everywhere, expression, documentation + where, units);
+      table.bind_family(path,
+                        entry.boundaries,
+                        expression,
+                        documentation + where +
+                          "; on the contact boundary or part of this name",
+                        units);
+    };
+    bind(
+      "Contact law/Friction bound",
+      p.friction.bound,
+      "The traction along the contact boundary up to which nothing slides, whatever presses (Tresca)",
+      "force per area");
+    bind(
+      "Contact law/Friction coefficient",
+      p.friction.coefficient,
+      "The traction along the contact boundary up to which nothing slides, over the pressure (Coulomb), on a load path; a Friction bound is added to it",
+      "none");
   }
 } // namespace Debond

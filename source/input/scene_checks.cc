@@ -129,6 +129,18 @@ namespace Debond
 
 
 
+    /// Whether bonds are not springs that break at once.
+    bool
+    breaks_not_at_once(const Parameters &p)
+    {
+      if (p.law.pieces.empty())
+        return false;
+      const PiecewiseEnergy pieces(p.law.pieces);
+      return pieces.size() > 2 || (pieces.size() == 2 && !pieces[1].is_flat());
+    }
+
+
+
     /// Checks bonds that shear, and refuses what has no meaning with them.
     void
     check_shear(Parameters &p, ParameterTable &table)
@@ -181,8 +193,7 @@ namespace Debond
       // through the origin. Bonds that break at once have one such piece, and a
       // flat one behind it at most.
       const PiecewiseEnergy pieces(p.law.pieces);
-      const bool            breaks_at_once =
-        pieces.size() == 1 || (pieces.size() == 2 && pieces[1].is_flat());
+      const bool            breaks_at_once = !breaks_not_at_once(p);
       refuse(
         {{pieces[0].slope != 0. ||
             (pieces[0].curvature == 0. && pieces.size() > 1),
@@ -212,6 +223,79 @@ namespace Debond
           "Load path/Global branch",
           "needs Law = winkler where bonds shear, to prove it"}},
         {tangential},
+        table);
+    }
+
+
+
+    /// Refuses what cannot be together with friction.
+    void
+    check_friction(const Parameters &p, ParameterTable &table)
+    {
+      if (!p.friction.is_somewhere())
+        {
+          table.without_effect("Contact law/Friction acts",
+                               "there is no friction");
+          return;
+        }
+      if (p.friction.is_of_damage &&
+          (p.load_path.factors.empty() || p.load_path.bonds_heal))
+        table.reject("Contact law/Friction acts",
+                     "needs a load path with Bonds heal = false for damage",
+                     {"Load path/Bonds heal", "Load path/Factors"});
+      // The entry that the scene has.
+      const auto name_of = [](const std::string               &word,
+                              const FrictionParameters::Entry &own) {
+        return "Contact law/Friction " + word +
+               (own.everywhere.empty() ? ' ' + own.boundaries.begin()->first :
+                                         "");
+      };
+      const std::string entry =
+        p.friction.bound.empty() ?
+          name_of("coefficient", p.friction.coefficient) :
+          name_of("bound", p.friction.bound);
+      const std::string tangential = "Contact law/Tangential displacement";
+      const auto        is_fixed   = [&](const std::string &path) {
+        return table.is_set(path) && table.get(path) == "fixed";
+      };
+      using Rule = ContactQuadratureParameters::Rule;
+      refuse({{p.dimension != 2,
+               entry,
+               "is for plane bodies and those of revolution"},
+              {p.degree != 1, entry, "needs linear displacements"},
+              {p.quadrature.rule != Rule::nodal,
+               entry,
+               "needs Contact law/Quadrature = nodal, with which one unknown "
+               "slides at a time"},
+              {is_fixed(tangential), entry, "is for what can slide"}},
+             {"Dimension", "Mesh/Degree", "Contact law/Quadrature", tangential},
+             table);
+      for (const auto &[word, own] :
+           {std::make_pair("bound", &p.friction.bound),
+            std::make_pair("coefficient", &p.friction.coefficient)})
+        for (const auto &[name, unused] : own->boundaries)
+          if (is_fixed(tangential + ' ' + name))
+            table.reject(words("Contact law/Friction ", word, ' ', name),
+                         "is for what can slide",
+                         {tangential + ' ' + name});
+      if (!p.friction.coefficient.empty() && p.load_path.factors.empty())
+        table.reject(name_of("coefficient", p.friction.coefficient),
+                     "needs a load path, as what slides depends on how the "
+                     "loads grow: Load path/Factors = 1 is one step from rest",
+                     {"Load path/Factors"});
+      refuse(
+        {{p.load_path.arc, "Load path/Arc", "is for bodies without friction"},
+         {p.solver.prove && breaks_not_at_once(p),
+          "Solver/Prove",
+          "needs Law = winkler, or none, with friction"},
+         {p.load_path.global_branch == GlobalBranch::prove,
+          "Load path/Global branch",
+          "is for bodies without friction, if it is prove"},
+         {p.solver.method == SolverMethod::euclidean_bundle ||
+            p.solver.method == SolverMethod::energy_bundle,
+          "Solver/Method",
+          "has to be majorise minimise with friction"}},
+        {entry},
         table);
     }
 
@@ -268,6 +352,8 @@ namespace Debond
                                      "Bond shear stiffness",
                                      "Bond shear strength",
                                      "Shear fracture energy",
+                                     "Friction bound",
+                                     "Friction coefficient",
                                      "Tangential displacement"})
         if (const std::string entry = "Contact law/" + name;
             boost::starts_with(path + ' ', entry + ' ') && table.is_set(path))
@@ -334,6 +420,7 @@ namespace Debond
     check_degree(p, table);
     check_softening(p, table);
     check_shear(p, table);
+    check_friction(p, table);
     check_exact_displacement(p, table);
     check_accuracy(p, table);
   }

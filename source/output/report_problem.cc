@@ -148,6 +148,10 @@ namespace Debond
                     bonds.energy.empty() ? "" :
                                            ", fracture energy " + bonds.energy);
       lines("tangential", problem.tangential_displacements);
+      line("friction bound", problem.friction.bound.everywhere);
+      lines("friction bound", problem.friction.bound.boundaries);
+      line("friction", problem.friction.coefficient.everywhere);
+      lines("friction", problem.friction.coefficient.boundaries);
       lines("shear stiffness", problem.shear.stiffness.boundaries);
       lines("shear strength", problem.shear.strength.boundaries);
       lines("shear energy", problem.shear.energy.boundaries);
@@ -188,7 +192,8 @@ namespace Debond
     // although they are fixed: 710 on its mesh 40x4.
     const bool is_fixed =
       problem.tangential_displacement == TangentialDisplacement::fixed &&
-      problem.tangential_displacements.empty();
+      problem.tangential_displacements.empty() &&
+      !problem.friction.is_somewhere();
     const unsigned int n_dofs_paper =
       scene.n_unknowns() + (is_fixed ? (dim - 1) * n_nodes : 0);
     record.add({{"cells", scene.n_cells()},

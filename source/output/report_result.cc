@@ -317,6 +317,20 @@ namespace Debond
         texts.push_back(words("in shear broken ", n));
       record.line("contact nodes",
                   texts.empty() ? "all held" : join(texts, ", "));
+      if (verification.has_friction())
+        {
+          const auto slides = [&](const bool wanted) {
+            return std::count_if(verification.nodes.begin(),
+                                 verification.nodes.end(),
+                                 [wanted](const ContactNodeState &node) {
+                                   return node.slides == wanted;
+                                 });
+          };
+          record.line(
+            "friction", "sticks ", slides(false), ", slides ", slides(true));
+          record.add({{"friction",
+                       {{"sticks", slides(false)}, {"slides", slides(true)}}}});
+        }
       record.line("opening",
                   "largest ",
                   scientific(verification.largest_opening, 3),
@@ -435,7 +449,8 @@ namespace Debond
              // A body that may slide has no force along the boundary.
              details && (problem.tangential_displacement !=
                            TangentialDisplacement::free ||
-                         !problem.tangential_displacements.empty()));
+                         !problem.tangential_displacements.empty() ||
+                         problem.friction.is_somewhere()));
     }
 
 
@@ -604,8 +619,11 @@ namespace Debond
     /// The largest force of the path and the reactions there; null without one.
     template <int dim>
     void
-    report_peak(const std::optional<LoadPathPeak<dim>> &peak, Record &record)
+    report_peak(const PathProgress<dim> &path,
+                const bool               comes_off,
+                Record                  &record)
     {
+      const std::optional<LoadPathPeak<dim>> &peak = path.peak;
       if (!peak || peak->force() == 0.)
         {
           record.add("/load_path/peak", nullptr);
@@ -615,6 +633,10 @@ namespace Debond
       std::optional<double>     known_to;
       if (peak->bound)
         known_to = *peak->bound / peak->force() - 1.;
+      // Where the path ends with its largest force, that of the joint may be
+      // larger. What comes off has none beyond.
+      const bool is_at_end =
+        !comes_off && peak->step.factors() == path.steps.back().factors();
       // The work of the supports for a unit of the factor is their force if
       // they prescribe a displacement of 1 at the factor 1.
       record.add("/load_path/peak",
@@ -622,6 +644,7 @@ namespace Debond
                   {"factor", peak->step.factor},
                   {"displacement_factor", peak->step.displacement_factor},
                   {"known_to", Record::json_of(known_to)},
+                  {"at_end", is_at_end},
                   {"reactions", Json::object()}});
       record.line(
         "largest force",
@@ -630,7 +653,8 @@ namespace Debond
         peak->step.displacement_factor,
         known_to ?
           words(", known to ", std::setprecision(2), 100. * *known_to, " %") :
-          ", of the states that were found");
+          ", of the states that were found",
+        is_at_end ? ", where the path ends: beyond, it may be larger" : "");
       const std::string prefix = "reaction_";
       for (const auto &[name, force] : state.vectors)
         if (name.rfind(prefix, 0) == 0)
@@ -669,7 +693,9 @@ namespace Debond
                     result.solution.comes_off_at,
                     load_path,
                     record);
-      report_peak(result.path.peak, record);
+      report_peak(result.path,
+                  result.solution.comes_off_at.has_value(),
+                  record);
       report_arc(result.arc, load_path, record);
 
       // The mesh has to be fine enough for the worst step of the path.

@@ -74,6 +74,10 @@ namespace Debond
         });
         table.add("shear_damage", nodes, &ContactNodeState::shear_damage);
       }
+    if (verification.has_friction())
+      table.add("slides", nodes, [](const auto &node) {
+        return node.slides.value_or(false) ? 1 : 0;
+      });
     table.add("bond_stiffness", nodes, &ContactNodeState::bond_stiffness);
     table.add("bond_threshold", nodes, &ContactNodeState::bond_threshold);
     table.add("damage", nodes, &ContactNodeState::damage);

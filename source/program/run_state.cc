@@ -120,6 +120,7 @@ namespace Debond
     void
     exchange(Archive &archive, BondMemory &memory)
     {
+      archive &memory.slipped &memory.pressed &memory.rubbed;
       archive &memory.reached &memory.mode &memory.mixity &memory.taken &memory
         .lag;
     }

@@ -219,6 +219,15 @@ compare("peel, moment", crack_couple(), plateau, 0.05)
 for energy in energies:
     close("peel, energy by crack length", energy, 0.04, 0.05)
 
+# c = a sqrt(1 - Q / (mu P)) of what sticks, to the size of a cell.
+for cells in 80, 160:
+    for row in solve("cattaneo", f"Cells={cells}, {cells}")["path"]:
+        P, Q = abs(row["reaction_top_y"]), row["reaction_top_x"]
+        half = math.sqrt(4. * P * 20. * 2. * (1. - 0.3**2) / math.pi)
+        close("cylinders, contact", 8. * row["contact_part"], half, 0.6 * 16. / cells, 1.)
+        close("cylinders, sticks", 8. * row["stick_part"], half * math.sqrt(1. - Q / (0.3 * P)),
+              0.6 * 16. / cells, 1.)
+
 openings = []
 for cells in "8, 4", "16, 8", "32, 16":
     result = solve("tack", "Cells=" + cells)

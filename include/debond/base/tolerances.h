@@ -94,6 +94,18 @@ namespace Debond
     /// damaged lags by this part of the energy that they take.
     constexpr double lag_of_mode = 0.02;
 
+    /// The rounding of forces to forces from which on displacements of a body
+    /// that friction holds are lost.
+    constexpr double lost_beside_friction = 1e-3;
+
+    /// A step has the pressures of Coulomb's friction if what they lead to
+    /// differs by no more than this part of the largest.
+    constexpr double pressure_of_friction = 1e-11;
+
+    /// States of Coulomb's friction are two if they differ by this part of
+    /// their displacements.
+    constexpr double other_friction = 1e-6;
+
     /// Openings of bonds that bear nothing yet, to that at which they begin to
     /// be damaged.
     constexpr double bears_nothing = 0.1;

@@ -50,6 +50,10 @@ namespace Debond
     /// The part of shear in what the bond has stored, if bonds shear.
     std::optional<double> mode_mixity = {};
 
+    /// Whether it has moved along the boundary in this step, if there is
+    /// friction.
+    std::optional<bool> slides = {};
+
     BondState state;
 
     /// The state by the branch of the law that holds, whatever contact and kink
@@ -144,11 +148,12 @@ namespace Debond
     std::vector<dealii::Tensor<1, dim>> displacements, tangential_forces;
 
     /// The displacements along the boundary that stretch bonds; none if bonds
-    /// do not shear.
+    /// do not shear and there is no friction.
     std::vector<dealii::Tensor<1, dim>> slips;
 
     /// What bonds that shear exert along the boundary on the body at the nodes
-    /// themselves, by the law at the slip there: forces per area.
+    /// themselves, by the law at the slip there: forces per area. With friction
+    /// that and bonds together, from A u - f.
     std::vector<dealii::Tensor<1, dim>> shear_tractions;
 
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
@@ -173,6 +178,16 @@ namespace Debond
 
     unsigned int
     count(const BondState state) const;
+
+    bool
+    has_friction() const
+    {
+      return std::any_of(nodes.begin(),
+                         nodes.end(),
+                         [](const ContactNodeState &node) {
+                           return node.slides.has_value();
+                         });
+    }
 
     const std::string &
     name(const BondState state) const;

@@ -9,12 +9,12 @@
 
 namespace Debond
 {
-  /// What bonds that do not return remember, for each of ContactPoints::list();
-  /// all empty if bonds return.
+  /// What a contact boundary remembers.
   struct BondMemory
   {
-    /// The least scaled displacement that they have been at: what is above it
-    /// does not come back.
+    /// Of bonds that do not return, for each of ContactPoints::list(), the
+    /// least scaled displacement that they have been at: what is above it does
+    /// not come back. Empty, as the next lists are, if bonds return.
     std::vector<double> reached = {};
 
     /// Where what they take depends on the mode, the part of shear that they
@@ -27,10 +27,48 @@ namespace Debond
     /// at which they began to.
     double lag = 0.;
 
+    /// Of friction, for each unknown, where it was at the beginning of the step
+    /// and the weight of its kink in it, and the energy that friction had taken
+    /// until then. Empty before the first step.
+    std::vector<double> slipped = {}, pressed = {};
+    double              rubbed = 0.;
+
     bool
     empty() const
     {
-      return reached.empty();
+      return reached.empty() && slipped.empty();
+    }
+  };
+
+
+
+  /// Friction along unknowns of the contact boundary: with the force `bound`
+  /// (Tresca) and with `coefficient` times what presses (Coulomb), both 0 along
+  /// normals.
+  struct Friction
+  {
+    Eigen::VectorXd bound       = {};
+    Eigen::VectorXd coefficient = {};
+    /// Whose force presses; none for those of vertices that supports hold.
+    std::vector<unsigned int> node = {};
+
+    /// The vertices without friction, although it belongs there, since supports
+    /// move them along the boundary.
+    unsigned int n_moved = 0;
+
+    /// It is multiplied by the damage that bonds had before the step.
+    bool is_of_damage = false;
+
+    bool
+    empty() const
+    {
+      return bound.size() == 0;
+    }
+
+    bool
+    depends_on_pressure() const
+    {
+      return coefficient.size() > 0 && coefficient.maxCoeff() > 0.;
     }
   };
 
@@ -44,6 +82,10 @@ namespace Debond
    * ratio of the stiffnesses in shear and along the normal: j_1(-l). Such an
    * effective opening is that of Camacho and Ortiz (Int. J. Solids Struct. 33,
    * 1996).
+   *
+   * Friction is a part of it, as one with a given bound: the work of the bound
+   * along the way t - t_0 from where the last step has ended. With Coulomb's
+   * law the bound is that of the pressures last given.
    *
    * Keeps references to its arguments.
    */
@@ -101,6 +143,36 @@ namespace Debond
     void
     break_for_good(const VectorView &s);
 
+    void
+    set_friction(const Friction &friction);
+
+    const Friction &
+    friction() const
+    {
+      return rubs;
+    }
+
+    /// A step of a path begins at @p s, to which friction has taken the work of
+    /// the way. A given bound is that of the damage until then.
+    void
+    slide_to(const VectorView &s);
+
+    /// From now on friction is that of these normal @p forces of all nodes,
+    /// positive ones press. Returns by how much its largest forces change,
+    /// relative to the largest of them.
+    double
+    press(const VectorView &forces);
+
+    /// From now on nothing slides where friction depends on the pressure.
+    void
+    stick();
+
+    const Kinks &
+    kinks() const override
+    {
+      return friction_kinks;
+    }
+
     const BondMemory &
     memory() const
     {
@@ -131,7 +203,7 @@ namespace Debond
     double
     reached(const unsigned int node) const
     {
-      return broken.empty() ? 0. : reached_of_nodes[node];
+      return broken.reached.empty() ? 0. : reached_of_nodes[node];
     }
 
     /// Returns the least s that the bonds at a vertex of a face have reached;
@@ -143,7 +215,7 @@ namespace Debond
     double
     reached_at(const Face &face, const Barycentric &place) const
     {
-      return broken.empty() ?
+      return broken.reached.empty() ?
                0. :
                broken.reached[contact_points.nearest(face, place)];
     }
@@ -166,7 +238,7 @@ namespace Debond
           const ContactPoint<dim> &point = contact_points.list()[q];
           visit(point,
                 point.scaled_displacement(s),
-                broken.empty() ? 0. : broken.reached[q]);
+                broken.reached.empty() ? 0. : broken.reached[q]);
         }
     }
 
@@ -210,7 +282,8 @@ namespace Debond
     double
     value(const VectorView &s) const;
 
-    /// The energy that bonds which do not return have taken for good.
+    /// The energy that bonds which do not return, and friction, have taken for
+    /// good.
     double
     dissipated_energy() const;
 
@@ -296,6 +369,10 @@ namespace Debond
                           const double                         across,
                           std::vector<Eigen::Triplet<double>> &entries);
 
+    /// The weights of the kinks in this step, which bonds that hold may lessen.
+    void
+    set_weights(Eigen::VectorXd weights);
+
     /// Adapts what follows from the points and their memory.
     void
     update();
@@ -307,7 +384,9 @@ namespace Debond
     ContactPoints<dim>  contact_points;
     const AdhesiveLaw  &law;
     BondMemory          broken;
-    std::vector<double> reached_of_nodes; ///< empty as broken is
+    Friction            rubs;
+    Kinks               friction_kinks;   ///< empty without friction
+    std::vector<double> reached_of_nodes; ///< empty as broken.reached is
     double              phi_at_zero = 0.;
   };
 } // namespace Debond

@@ -44,6 +44,9 @@ namespace Debond
     std::map<dealii::types::boundary_id, TangentialDisplacement>
       own_tangential_displacements = {};
 
+    /// The contact boundaries with friction.
+    std::set<dealii::types::boundary_id> with_friction = {};
+
     TangentialDisplacement
     tangential(const dealii::types::boundary_id id) const
     {
@@ -63,6 +66,15 @@ namespace Debond
                            return tangential(id) ==
                                   TangentialDisplacement::bonded;
                          });
+    }
+
+    /// Returns whether bonds or friction depend on the displacement along this
+    /// contact boundary.
+    bool
+    has_tangents(const dealii::types::boundary_id id) const
+    {
+      return with_friction.count(id) > 0 ||
+             tangential(id) == TangentialDisplacement::bonded;
     }
 
     /// Returns whether the tangential displacement is fixed on this contact

@@ -43,6 +43,34 @@ namespace Debond
 
 
 
+  /// Friction on the contact boundary: expressions.
+  struct FrictionParameters
+  {
+    struct Entry
+    {
+      std::string                        everywhere; ///< empty without
+      std::map<std::string, std::string> boundaries; ///< by their names
+
+      bool
+      empty() const
+      {
+        return everywhere.empty() && boundaries.empty();
+      }
+    };
+
+    Entry bound; ///< a force per area
+    Entry coefficient;
+    bool  is_of_damage = false;
+
+    bool
+    is_somewhere() const
+    {
+      return !bound.empty() || !coefficient.empty();
+    }
+  };
+
+
+
   /// The problem whose least J is looked for: the body with its discretisation,
   /// its materials, what holds and loads it, and its bonds. Nothing about who
   /// finds it, how well and what is written.
@@ -62,6 +90,7 @@ namespace Debond
     /// Their words by the names of contact boundaries.
     std::map<std::string, std::string> tangential_displacements;
     ShearParameters                    shear;
+    FrictionParameters                 friction;
     SupportParameters                  supports;
     LoadParameters                     loads;
     LoadPathParameters                 load_path;

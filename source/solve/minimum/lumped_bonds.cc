@@ -55,6 +55,7 @@ namespace Debond
         result.f[i] = energy_of(bonds, weights(i));
     if (!adhesion.shears())
       return result;
+    result.friction                      = adhesion.kinks();
     const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
     result.bonds.resize(weights.size());
     std::iota(result.bonds.begin(), result.bonds.begin() + n, 0);
@@ -90,9 +91,16 @@ namespace Debond
     };
     for (unsigned int i = 0; i < n; ++i)
       {
-        const BondScale bonds     = adhesion.points().bonds_at(i);
-        const bool      separates = bonds.shear_energy > 0.;
-        shear_bonds[i]            = add(boundary.nodes[i],
+        BondScale  bonds     = adhesion.points().bonds_at(i);
+        const bool separates = bonds.shear_energy > 0.;
+        // What only friction holds along the boundary has no energy here.
+        if (bonds.shear == 0.)
+          {
+            bonds.shear = 1.;
+            add(boundary.nodes[i], bonds, true, i);
+            continue;
+          }
+        shear_bonds[i] = add(boundary.nodes[i],
                              separates ? bonds.in_shear() : bonds,
                              separates,
                              i);

@@ -23,6 +23,9 @@ namespace Debond
                       const VectorView            &s,
                       const Condensation          *condensed)
   {
+    // Nor has Coulomb's friction a functional that is least.
+    if (adhesion.friction().depends_on_pressure())
+      return MinimumKind::stationary;
     // Without a second piece of the law, or without contact nodes, J is convex
     // and any stationary point is the minimum.
     if (adhesion.adhesive_law().pieces().size() == 1 || s.size() == 0)
@@ -46,15 +49,20 @@ namespace Debond
       return MinimumKind::stationary;
     // The second-order condition: S + Phi'' is positive definite on the s_i
     // that are free, with the smaller Phi'' if a bond is next to a kink. Nodes
-    // at s = 0 under pressure cannot move to first order; those that only touch
-    // the foundation can, and are free too.
+    // at s = 0 under pressure cannot move to first order, nor can those that
+    // stick below the bound of friction; those that only touch the foundation
+    // can, and are free too.
     const Eigen::MatrixXd S = condensed->schur_complement();
     const Eigen::VectorXd pressure =
       condensed->load() - S * s - adhesion.subgradient(s);
+    const double least =
+      Tolerance::at_kink * condensed->load().cwiseAbs().maxCoeff();
+    const Kinks              &kinks = adhesion.kinks();
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (s(i) < 0. || pressure(i) <= Tolerance::at_kink *
-                                        condensed->load().cwiseAbs().maxCoeff())
+      if (kinks.has(i) ? s(i) != kinks.place(i) ||
+                           std::abs(pressure(i)) >= kinks.weight(i) - least :
+                         s(i) < 0. || pressure(i) <= least)
         free.push_back(i);
     Eigen::MatrixXd A = S;
     A += least_second_derivative(adhesion, s, Tolerance::at_kink);

@@ -20,6 +20,9 @@ namespace Debond
     /// How often a step is done with new modes of its bonds.
     constexpr unsigned int most_modes = 10;
 
+    /// How often a step is done with new pressures of friction.
+    constexpr unsigned int most_pressures = 1000;
+
 
 
     template <int dim>
@@ -125,7 +128,7 @@ namespace Debond
       {
         return (solver ? solver->condensed() != nullptr :
                          answer.choice.is_condensed) &&
-               parameters.bonds_heal &&
+               parameters.bonds_heal && scene.adhesion().friction().empty() &&
                scene.problem().unknowns().is_held_by_supports();
       }
 
@@ -381,7 +384,8 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(begun.memory);
-        const Solution minimum = minimise(factors, begun, bonds);
+        bonds.slide_to(scene.contact_trace(begun.u));
+        const Solution minimum = minimise_with_friction(factors, begun, bonds);
         if (minimum.status == SolverStatus::interrupted && begun.step.step > 0)
           return {};
         result.add(minimum);
@@ -418,6 +422,97 @@ namespace Debond
           kind_without_search(bonds, end.point, at_step ? &*at_step : nullptr);
         judge(minimum, state.verification, end, result);
         return Reached{std::move(end), state.verification};
+      }
+
+      /// The minimum from the state before. Where friction depends on the
+      /// pressure it begins with all that sticks in the first step and with the
+      /// pressures of the step before in others, and once more with all that
+      /// sticks if these do not hold the body. Other starts may settle on other
+      /// states; a note says so.
+      Solution
+      minimise_with_friction(const LoadFactors      factors,
+                             const PathEnd<dim>    &begun,
+                             AdhesionIntegral<dim> &bonds)
+      {
+        if (!bonds.friction().depends_on_pressure())
+          return minimise(factors, begun, bonds);
+        const bool is_first = begun.step.step == 0;
+        if (is_first)
+          bonds.stick();
+        Solution result = settle_friction(factors, begun, bonds);
+        if (result.status == SolverStatus::comes_off && !is_first)
+          {
+            bonds.stick();
+            solver->start_from(begun.u);
+            result = settle_friction(factors, begun, bonds);
+          }
+        if (!can_be_verified(result.status) || knows_other_friction)
+          return result;
+        // The state stays what it is, and the solver returns to it.
+        const DofVector       u     = solver->displacement();
+        const Eigen::VectorXd s     = solver->point();
+        AdhesionIntegral<dim> other = bonds;
+        if (is_first)
+          other.press(Eigen::VectorXd::Zero(bonds.n_nodes()));
+        else
+          other.stick();
+        solver->start_from(begun.u);
+        knows_other_friction =
+          can_be_verified(settle_friction(factors, begun, other).status) &&
+          (solver->point() - s).norm() > Tolerance::other_friction * s.norm();
+        solver->start_from(u);
+        if (knows_other_friction)
+          result.notes.push_back(
+            words("Coulomb's friction has several states at ",
+                  parameters.name(factors),
+                  ": from other pressures another one is found. The path "
+                  "follows that which ",
+                  is_first ? "all that sticks leads to" :
+                             "the pressures of the step before lead to"));
+        return result;
+      }
+
+      /// The discrete problem of Coulomb is a fixed point of problems with a
+      /// given bound (Necas, Jarusek, Haslinger, Boll. Un. Mat. Ital. 17,
+      /// 1980), which are contracted if coefficients are small: each has the
+      /// pressures that the last one has led to.
+      Solution
+      settle_friction(const LoadFactors      factors,
+                      const PathEnd<dim>    &begun,
+                      AdhesionIntegral<dim> &bonds)
+      {
+        const Condensation condensed_here =
+          CondensedScene<dim>{scene, *solver->condensed()}.at(factors);
+        Solution result;
+        double   change = infinity;
+        for (unsigned int k = 0; k < most_pressures; ++k)
+          {
+            // Each begins where the step does: bonds that break with other
+            // pressures would stay broken.
+            solver->start_from(begun.u);
+            result.add(minimise(factors, begun, bonds));
+            if (!can_be_verified(result.status))
+              return result;
+            // What is closed is pressed by what is missing to equilibrium.
+            const Eigen::VectorXd s = solver->point();
+            const Eigen::VectorXd forces =
+              condensed_here.load() - condensed_here.schur_complement() * s;
+            change = bonds.press(
+              (s.array() == 0.).select(forces, 0.).head(bonds.n_nodes()));
+            if (change <= Tolerance::pressure_of_friction)
+              return result;
+          }
+        result.status = SolverStatus::iteration_limit;
+        result.message =
+          words("friction: the pressures change by ",
+                change,
+                " of the largest one after ",
+                most_pressures,
+                " repetitions, required is ",
+                Tolerance::pressure_of_friction,
+                ". Try smaller steps, or a smaller Friction coefficient: with "
+                "a large one there may be no state, or many.");
+        return result;
       }
 
       /// The minimum from the state before. The fracture energy of bonds may
@@ -510,6 +605,9 @@ namespace Debond
       double       seconds_of_force = 0.;
       unsigned int n_inside         = 0; ///< states sought inside of a step
 
+      /// Another state of Coulomb's friction was found, and a note says so.
+      bool knows_other_friction = false;
+
       std::shared_ptr<ContactSolver<dim>> solver; ///< see make_solver()
     };
   } // namespace
@@ -541,7 +639,8 @@ namespace Debond
     if (parameters.asks_for_branch && wants_branch && !has_branch)
       answer.solution.notes.push_back(
         "There is no global branch: it is for bonds that heal, a direct linear "
-        "solver and bodies that not only bonds and the foundation hold.");
+        "solver, no friction and bodies that not only bonds and the foundation "
+        "hold.");
     return answer;
   }
 

@@ -133,6 +133,9 @@ namespace Debond
           }
       };
 
+      const std::size_t stick = state.other_parts.size();
+      if (adhesion.kinks().weight.size() > 0)
+        state.other_parts.emplace_back("stick", 0.);
       const bool breaks_separately =
         std::any_of(adhesion.points().list().begin(),
                     adhesion.points().list().end(),
@@ -143,6 +146,8 @@ namespace Debond
         {
           if (breaks_separately && verification.nodes[i].shear_damage == 1.)
             state.other_parts.back().second += nodes[i].measure;
+          if (verification.nodes[i].slides == false)
+            state.other_parts[stick].second += nodes[i].measure;
           // Each node counts with the measure of the boundary that its bonds
           // stand for.
           const ContactNodeState &node = verification.nodes[i];
@@ -219,7 +224,9 @@ namespace Debond
     state.fronts               = fronts(boundary, adhesion, s);
     state.cell_size_at_edge =
       cell_size_at_edge(problem, adhesion, verification);
-    state.dissipated_energy = adhesion.dissipated_energy();
+    // With what friction takes in this step.
+    state.dissipated_energy =
+      adhesion.dissipated_energy() + adhesion.kinks().value(s);
     for (const auto &[name, vector] : verification.reactions)
       state.vectors.emplace_back("reaction_" + as_title(name), vector);
     return state;

@@ -285,6 +285,16 @@ namespace Debond
         make_bond_field<dim>(given, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
+    if (given.friction.is_somewhere())
+      adhesion_integral->set_friction(
+        make_friction(given, boundary_conditions, contact_boundary()));
+    if (const unsigned int n = adhesion_integral->friction().n_moved; n > 0)
+      body_notes.push_back(
+        words("friction is left out at ",
+              n,
+              n == 1 ? " node" : " nodes",
+              " that supports move along the boundary: reactions and what is "
+              "dissipated lack its part there, which is less on finer meshes"));
     // Bonds that vary are expressions, which may be wrong at points that the
     // solve does not ask for but the estimate of the error does. They are
     // evaluated there now, so that the error comes before the solve.

@@ -63,6 +63,17 @@ namespace Debond
 
 
 
+    /// The entries of friction with their names: the bound and the coefficient.
+    std::array<std::pair<std::string, const FrictionParameters::Entry *>, 2>
+    entries_of_friction(const ProblemParameters &given)
+    {
+      return {
+        {{"Contact law/Friction bound", &given.friction.bound},
+         {"Contact law/Friction coefficient", &given.friction.coefficient}}};
+    }
+
+
+
     /// Components that a scene prescribes, "free" for those that it does not.
     template <int dim>
     PrescribedDisplacement<dim>
@@ -140,6 +151,31 @@ namespace Debond
         conditions.own_tangential_displacements[id] =
           or_free(tangential_named(own.at(name)));
       });
+    // Friction resists what slides: where nothing else is said, all may.
+    // A boundary that is fixed by its name has none.
+    const auto add_friction = [&](const dealii::types::boundary_id id) {
+      const auto named = conditions.own_tangential_displacements.find(id);
+      if (named != conditions.own_tangential_displacements.end() &&
+          named->second == TangentialDisplacement::fixed)
+        return;
+      conditions.with_friction.insert(id);
+      if (conditions.fixes_tangential(id))
+        conditions.own_tangential_displacements[id] =
+          TangentialDisplacement::free;
+    };
+    for (const auto &[entry, texts] : entries_of_friction(given))
+      {
+        if (!texts->everywhere.empty())
+          for (const dealii::types::boundary_id id : conditions.contact)
+            add_friction(id);
+        for_contact_boundaries(given,
+                               entries_of(entry, texts->boundaries),
+                               conditions,
+                               [&](const std::string &,
+                                   const dealii::types::boundary_id id) {
+                                 add_friction(id);
+                               });
+      }
     return conditions;
   }
 
@@ -197,9 +233,16 @@ namespace Debond
       // mean, but gaps.
       if (!text.empty())
         for (const dealii::types::boundary_id id : conditions.contact)
-          if (n_components == 1 || conditions.high_sides.count(id) == 0)
+          if (n_components == 1 || (conditions.high_sides.count(id) == 0 &&
+                                    conditions.low_sides.count(id) == 0))
             fields[id] = {"",
                           make_function<dim>(text, constants, n_components)};
+      if (!text.empty() && fields.empty() && !conditions.contact.empty())
+        throw EntryError(entry,
+                         "is that of foundations, and all contact boundaries "
+                         "are between bodies: " +
+                           entry.substr(entry.find('/') + 1) +
+                           " NAME is for the one of this name");
       for_contact_boundaries(given,
                              entries_of(entry, own),
                              conditions,
@@ -350,6 +393,112 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// A number of friction on all unknowns of the contact boundary, 0 where it
+    /// has none, by @p weight(face, k) times what the entry says at vertex k.
+    template <int dim, typename Weight>
+    Eigen::VectorXd
+    on_unknowns(const std::string               &entry,
+                const FrictionParameters::Entry &texts,
+                const ProblemParameters         &given,
+                const BoundaryConditions        &conditions,
+                const ContactBoundary<dim>      &boundary,
+                const Weight                    &weight)
+    {
+      // By boundary, its entry and its expression: those with a name replace
+      // what holds everywhere.
+      using Field =
+        std::pair<std::string, std::shared_ptr<const dealii::Function<dim>>>;
+      std::map<dealii::types::boundary_id, Field> fields;
+      const auto make = [&](const std::string &text) {
+        return make_function<dim>(text, given.loads.constants, 1);
+      };
+      if (!texts.everywhere.empty())
+        for (const dealii::types::boundary_id id : conditions.contact)
+          fields[id] = {entry, make(texts.everywhere)};
+      for (const auto &[name, text] : texts.boundaries)
+        for (const dealii::types::boundary_id id : conditions.names.at(name))
+          fields[id] = {entry + ' ' + name, make(text)};
+      Eigen::VectorXd result = Eigen::VectorXd::Zero(boundary.n_unknowns());
+      const auto      add    = [&](const auto &tangents, const double value) {
+        for (const auto &tangent : tangents)
+          if (!tangent.is_held)
+            result(tangent.index) += value;
+      };
+      for (const auto &face : boundary.faces)
+        if (const auto found = fields.find(face.id); found != fields.end())
+          for (unsigned int k = 0; k < dim; ++k)
+            try
+              {
+                const double value =
+                  weight(face, k) *
+                  nonnegative_value(*found->second.second, face.vertices[k]);
+                // Where nothing is unknown along the boundary nothing slides.
+                if (!face.is_held(k))
+                  add(boundary.nodes[face.node(k)].tangents, value);
+                else if (!boundary.held_vertices.empty())
+                  add(boundary.held_vertices[face.held_at(k)].tangents, value);
+              }
+            catch (const std::invalid_argument &error)
+              {
+                throw EntryError(found->second.first, error.what());
+              }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Friction
+  make_friction(const ProblemParameters    &given,
+                const BoundaryConditions   &conditions,
+                const ContactBoundary<dim> &boundary)
+  {
+    if (!given.friction.is_somewhere())
+      return {};
+    const auto entries = entries_of_friction(given);
+    // Each vertex has the integral of its basis function times the bound there:
+    // the trapezoidal rule, with which one unknown slides at a time. Its
+    // coefficient is the mean of those of its faces.
+    Friction result;
+    result.bound = on_unknowns(entries[0].first,
+                               *entries[0].second,
+                               given,
+                               conditions,
+                               boundary,
+                               [&](const auto &face, const unsigned int k) {
+                                 return boundary.integral(face, k);
+                               });
+    result.coefficient =
+      on_unknowns(entries[1].first,
+                  *entries[1].second,
+                  given,
+                  conditions,
+                  boundary,
+                  [&](const auto &face, const unsigned int k) {
+                    return face.is_held(k) ?
+                             0. :
+                             boundary.integral(face, k) /
+                               boundary.nodes[face.node(k)].measure;
+                  });
+    result.is_of_damage = given.friction.is_of_damage;
+    for (const auto &vertex : boundary.held_vertices)
+      result.n_moved += vertex.is_tangential &&
+                        vertex.normal_displacement != 0. &&
+                        conditions.with_friction.count(vertex.boundary) > 0;
+    result.node.assign(boundary.n_unknowns(),
+                       dealii::numbers::invalid_unsigned_int);
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      for (const auto &tangent : boundary.nodes[i].tangents)
+        if (!tangent.is_held)
+          result.node[tangent.index] = i;
+    return result;
+  }
+
+
+
   std::vector<double>
   displacement_factors(const LoadPathParameters &load_path)
   {
@@ -407,5 +556,6 @@ namespace Debond
 
   DEBOND_INSTANTIATE(make_supports);
   DEBOND_INSTANTIATE(make_bond_field);
+  DEBOND_INSTANTIATE(make_friction);
   DEBOND_INSTANTIATE(check_held_vertices);
 } // namespace Debond

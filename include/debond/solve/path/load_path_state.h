@@ -60,7 +60,7 @@ namespace Debond
     /// soften. E* is E / (1 - nu^2), a the stiffness of the bonds.
     double cell_size_at_edge;
 
-    double dissipated_energy; ///< by bonds that do not heal
+    double dissipated_energy; ///< by bonds that do not heal, and by friction
 
     /// By the titles of their columns, without the axis.
     ProbeValues<dim> vectors;

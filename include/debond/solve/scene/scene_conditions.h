@@ -2,7 +2,7 @@
 #ifndef debond_solve_scene_scene_conditions_h
 #define debond_solve_scene_scene_conditions_h
 
-#include <debond/contact/bond_field.h>
+#include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/mesh/by_region.h>
@@ -32,6 +32,13 @@ namespace Debond
   make_bond_field(const ProblemParameters  &given,
                   const AdhesiveLaw        &law,
                   const BoundaryConditions &conditions);
+
+  /// Empty without friction. Throws EntryError.
+  template <int dim>
+  Friction
+  make_friction(const ProblemParameters    &given,
+                const BoundaryConditions   &conditions,
+                const ContactBoundary<dim> &boundary);
 
   /// Returns the factors of prescribed displacements at all steps.
   std::vector<double>
