@@ -484,10 +484,17 @@ namespace Debond
                                boundary.nodes[face.node(k)].measure;
                   });
     result.is_of_damage = given.friction.is_of_damage;
-    for (const auto &vertex : boundary.held_vertices)
-      result.n_moved += vertex.is_tangential &&
-                        vertex.normal_displacement != 0. &&
-                        conditions.with_friction.count(vertex.boundary) > 0;
+    std::set<unsigned int> moved;
+    for (const auto &face : boundary.faces)
+      if (conditions.with_friction.count(face.id) > 0)
+        for (unsigned int k = 0; k < dim; ++k)
+          if (!face.is_held(k))
+            for (const auto &tangent : boundary.nodes[face.node(k)].tangents)
+              if (tangent.is_held &&
+                  boundary.held_vertices[tangent.index].normal_displacement !=
+                    0.)
+                moved.insert(face.node(k));
+    result.n_moved = static_cast<unsigned int>(moved.size());
     result.node.assign(boundary.n_unknowns(),
                        dealii::numbers::invalid_unsigned_int);
     for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
