@@ -5,6 +5,8 @@
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorant.h>
 
+#include <optional>
+
 namespace Debond
 {
   /**
