@@ -16,6 +16,29 @@ namespace Debond
 
 
 
+    /// Forces to what all bonds could bear: less is rounding, or of no
+    /// interest.
+    constexpr double negligible_force = 1e-9;
+
+
+
+    /// What all bonds could bear at once.
+    template <int dim>
+    double
+    capacity(const AdhesionIntegral<dim> &adhesion)
+    {
+      double      sum   = 0.;
+      const auto &nodes = adhesion.contact_boundary().nodes;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        if (const BondScale bonds = adhesion.points().bonds_at(i);
+            bonds.energy > 0.)
+          sum += bonds.law->bond_strength() * bonds.energy / bonds.length *
+                 nodes[i].measure;
+      return sum;
+    }
+
+
+
     LoadFactors
     between(const LoadFactors first, const LoadFactors last, const double part)
     {
@@ -69,8 +92,8 @@ namespace Debond
         scene.problem().fields().applied_nodal_forces().linfty_norm() == 0.)
     , is_bounded(is_homogeneous && !scene.parameters().load_path.bonds_heal &&
                  !scene.adhesion().points().depends_on_mode())
-    , noise(scene.least_force() *
-            scene.problem().unknowns().lifting(1.).l1_norm())
+    , noise(negligible_force * capacity(scene.adhesion()) *
+            scene.problem().unknowns().lifting(1.).linfty_norm())
   {}
 
 

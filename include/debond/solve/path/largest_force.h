@@ -83,7 +83,7 @@ namespace Debond
     const bool        is_homogeneous;
     const bool        is_bounded; ///< by the slopes of its states
 
-    /// What forces that are rounding, as when all has come off, may do.
+    /// The work of forces that are rounding, as when all has come off.
     const double noise;
   };
 
