@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_friction.py DEBOND: friction. A bar on a rough table, pulled and let go, in closed form;
 blocks beside finite elements and a coordinate descent of its own, with bonds that break and with
