@@ -111,11 +111,12 @@ namespace Debond
     if (step != nullptr)
       compare(*step, *peak);
     // With other loads rest is no state of the path, and the whole length of
-    // it is no place to look into.
+    // it is no place to look into. With friction forces fall in each reversal.
     const bool is_suspect =
       is_homogeneous || step == nullptr ||
-      std::abs(step->state.unit_displacement_work) <
-        std::abs(begun.step.state.unit_displacement_work) - noise ||
+      (scene.adhesion().friction().empty() &&
+       std::abs(step->state.unit_displacement_work) <
+         std::abs(begun.step.state.unit_displacement_work) - noise) ||
       step->state.broken_part > begun.step.state.broken_part;
     if (!is_suspect || (!is_homogeneous && begun.step.step == 0) ||
         last.displacements == begun.step.displacement_factor)
