@@ -254,10 +254,6 @@ namespace Debond
         p.friction.bound.empty() ?
           name_of("coefficient", p.friction.coefficient) :
           name_of("bound", p.friction.bound);
-      const std::string tangential = "Contact law/Tangential displacement";
-      const auto        is_fixed   = [&](const std::string &path) {
-        return table.is_set(path) && table.get(path) == "fixed";
-      };
       using Rule = ContactQuadratureParameters::Rule;
       refuse({{p.dimension != 2,
                entry,
@@ -266,18 +262,21 @@ namespace Debond
               {p.quadrature.rule != Rule::nodal,
                entry,
                "needs Contact law/Quadrature = nodal, with which one unknown "
-               "slides at a time"},
-              {is_fixed(tangential), entry, "is for what can slide"}},
-             {"Dimension", "Mesh/Degree", "Contact law/Quadrature", tangential},
+               "slides at a time"}},
+             {"Dimension", "Mesh/Degree", "Contact law/Quadrature"},
              table);
+      // Fixed everywhere is the default, which gives way to friction; a
+      // boundary that is fixed by its name has none.
       for (const auto &[word, own] :
            {std::make_pair("bound", &p.friction.bound),
             std::make_pair("coefficient", &p.friction.coefficient)})
         for (const auto &[name, unused] : own->boundaries)
-          if (is_fixed(tangential + ' ' + name))
+          if (const auto word_of = p.tangential_displacements.find(name);
+              word_of != p.tangential_displacements.end() &&
+              word_of->second == "fixed")
             table.reject(words("Contact law/Friction ", word, ' ', name),
                          "is for what can slide",
-                         {tangential + ' ' + name});
+                         {"Contact law/Tangential displacement " + name});
       if (!p.friction.coefficient.empty() && p.load_path.factors.empty())
         table.reject(name_of("coefficient", p.friction.coefficient),
                      "needs a load path, as what slides depends on how the "

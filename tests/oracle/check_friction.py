@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_friction.py DEBOND: friction. A bar on a rough table, pulled and let go, in closed form;
 blocks beside finite elements and a coordinate descent of its own, with bonds that break and with
-several steps; turned, mirrored and in other units; what is refused."""
+several steps; turned, mirrored and in other units; what falls, and what is proved."""
 import math
 import os
 import pathlib
@@ -14,7 +14,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from run_scenes import Scenes, turned
+from run_scenes import NO_PICTURES, Scenes, full_entry
 
 scenes = Scenes(sys.argv[1])
 solve, check, close = scenes.solve, scenes.check, scenes.close
@@ -362,6 +362,47 @@ def check_fall():
                        f"Traction bottom={load / 2!r}; 0", "Contact law/Friction coefficient=0.3",
                        "Factors=0.5, 1", *PATH)
         check("status", result["status"] == status, result["status"])
+
+
+def check_invariances():
+    """A block that is pressed and pushed there and back, with bonds: turned, mirrored, and in
+    other units of length and stress."""
+    def path(friction, L=1., E=1., degrees=0., side=1.):
+        u, v = side * 0.01 * L, -0.004 * L
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        rows = solve(f"Lengths={2 * L!r}, {L!r}", "Cells=8, 4", f"Young modulus={100 * E!r}",
+                     "Poisson ratio=0.3", "Clamped boundaries=", "Contact boundary=bottom",
+                     f"Bond stiffness={20 * E / L!r}", f"Bond threshold={0.001 * L!r}",
+                     f"Mesh/Rotation={degrees!r}", f"Displacement top={c * u - s * v!r}; "
+                     f"{s * u + c * v!r}", f"Contact law/Friction {friction}", *PATH,
+                     "Displacement factors=0.3, 1, 0.4, -0.5")["path"]
+        return [(row["J"] / (E * L**2), row["dissipated_energy"] / (E * L**2), row["stick_part"],
+                 row["broken_part"]) for row in rows]
+    for name in ("bound=", "coefficient="):
+        scenes.section("invariance, " + name)
+        wanted = path(name + "0.3")
+        check("it slides", len(wanted) == 4 and 0. < wanted[1][1] < wanted[3][1], wanted)
+        for changes in ({"degrees": 33.}, {"degrees": -90.}, {"side": -1.},
+                        {"L": 1e-3, "E": 1e6}, {"L": 1e4, "E": 1e-3}):
+            rows = path(name + repr(0.3 * (changes.get("E", 1.) if name == "bound=" else 1.)),
+                        **changes)
+            for row, other in zip(rows, wanted, strict=True):
+                for value, expected in zip(row, other):
+                    close(f"{changes}", value, expected, 1e-9, max(abs(expected), 1e-3))
+
+
+def check_parameters_again():
+    """The scene with all parameters that a run has written can be run, and is the same."""
+    first = scenes.run("scene.prm", *("--set=" + full_entry(entry) for entry in (
+        *NO_PICTURES, "Lengths=2, 0.5", "Cells=8, 2", *BLOCK, "Traction top=0; -0.1",
+        "Traction bottom=0.02; 0", "Contact law/Friction coefficient=0.3", "Factors=0.5, 1",
+        *PATH, "Output/Directory=written")))
+    again = scenes.run("written/parameters.prm", "--set=Output/Directory=again")
+    results = [scenes.summary(name) for name in ("written", "again")]
+    scenes.section("parameters.prm once more")
+    check("exit codes", first.returncode == again.returncode == 0, first.stderr + again.stderr)
+    check("J", results[0].get("functional") is not None
+          and results[0]["functional"] == results[1].get("functional"), results)
 
 
 def check_proof_of_three_bonds():
