@@ -27,7 +27,7 @@ namespace Debond
       /// On one of its faces u_tau = 0 holds.
       bool is_tangential_fixed = false;
 
-      /// Bonds of one of its faces shear.
+      /// Bonds of one of its faces shear, or there is friction.
       bool has_tangents = false;
 
       std::vector<unsigned int> groups; ///< of its faces

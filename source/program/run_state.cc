@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 9, checksum " +
+      return "Debond run state 10, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 

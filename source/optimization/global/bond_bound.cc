@@ -139,9 +139,9 @@ namespace Debond
             bounds(i, 2) += w * std::abs(node.x(j) - p);
             for (const int broken : {0, 1})
               {
-                // The least value is concave in r, so that the least one for
-                // all that r can be is at an end.
-                // A kink makes the term one on each side of it.
+                // A kink makes the term one on each side of it. The least value
+                // is concave in r, so that the least one for all that r can be
+                // is at an end.
                 const double low = node.lower(j), high = node.upper(j);
                 const auto   on_side =
                   [&](const double slope, const double from, const double to) {

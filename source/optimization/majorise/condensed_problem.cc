@@ -103,8 +103,7 @@ namespace Debond
         energy += 0.5 * s(i) * S_s(i);
         work += g(i) * s(i);
         // S s + xi - g + mu = 0,  mu >= 0,  s <= b,  mu'(s - b) = 0, b being
-        // the upper bounds.
-        // At a kink any force up to its weight.
+        // the upper bounds; at a kink with any force up to its weight.
         const double mu =
           g(i) - S_s(i) - xi(i) - bounds.kinks.derivative(i, s(i));
         violation =
@@ -114,7 +113,7 @@ namespace Debond
                                          -mu);
         largest_force = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
-        state.n_active += s(i) == upper(i);
+        state.n_active += s(i) == upper(i) && !bounds.kinks.has(i);
         // A maximum would lose it.
         if (std::isnan(mu))
           violation = largest_force = mu;

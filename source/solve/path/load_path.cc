@@ -443,7 +443,6 @@ namespace Debond
         if (result.status == SolverStatus::comes_off && !is_first)
           {
             bonds.stick();
-            solver->start_from(begun.u);
             result = settle_friction(factors, begun, bonds);
           }
         if (!can_be_verified(result.status) || knows_other_friction)
@@ -456,7 +455,6 @@ namespace Debond
           other.press(Eigen::VectorXd::Zero(bonds.n_nodes()));
         else
           other.stick();
-        solver->start_from(begun.u);
         knows_other_friction =
           can_be_verified(settle_friction(factors, begun, other).status) &&
           (solver->point() - s).norm() > Tolerance::other_friction * s.norm();

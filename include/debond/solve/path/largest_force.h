@@ -21,7 +21,8 @@ namespace Debond
    *
    * With other loads, gaps or friction, bonds that heal, and energies that
    * depend on the mode this is no bound, and tells only where to look; with the
-   * first three only steps in which F falls or bonds break are halved.
+   * first three only steps in which bonds break are halved, and without
+   * friction those in which F falls.
    */
   template <int dim>
   class LargestForce
