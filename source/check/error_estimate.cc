@@ -684,18 +684,24 @@ namespace Debond
         Interval     sum      = {0., 0.};
         for (unsigned int k = 0; k < dim; ++k)
           if (!face.is_held(k))
-            for (const auto &tangent : boundary.nodes[face.nodes[k]].tangents)
-              if (!tangent.is_held && friction.has(tangent.index))
-                {
-                  const double bound = friction.weight(tangent.index) *
-                                       coordinates[k] /
-                                       boundary.nodes[face.nodes[k]].measure;
-                  const double way =
-                    (s(tangent.index) - friction.place(tangent.index)) *
-                    (tangent.direction * direction);
-                  sum.lower += way > 0. ? bound : -bound;
-                  sum.upper += way < 0. ? -bound : bound;
-                }
+            {
+              const auto            &node  = boundary.nodes[face.nodes[k]];
+              double                 bound = 0.;
+              dealii::Tensor<1, dim> way;
+              for (const auto &tangent : node.tangents)
+                if (!tangent.is_held && friction.has(tangent.index))
+                  {
+                    bound = friction.weight(tangent.index) * coordinates[k] /
+                            node.measure;
+                    way += (s(tangent.index) - friction.place(tangent.index)) *
+                           tangent.direction;
+                  }
+              // What sticks bears up to the bound in any direction.
+              const double length = way.norm();
+              const double along  = way * direction;
+              sum.lower += bound * (length > 0. ? along / length : -1.);
+              sum.upper += bound * (length > 0. ? along / length : 1.);
+            }
         return sum;
       }
 

@@ -171,6 +171,15 @@ namespace Debond
           }
       }
 
+    // Both components of friction in a plane may be what it can bear, and its
+    // size more than that.
+    const Kinks &kinks = adhesion.kinks();
+    for (const Eigen::Index i : kinks.pairs())
+      if (kinks.way(i, s) == 0.)
+        for (const Eigen::Index j : kinks.pair(i))
+          upper[j] = std::max(upper[j],
+                              (kinks.size(i, forces) - kinks.weight(i)) /
+                                scales[j].force);
     return upper;
   }
 

@@ -405,7 +405,7 @@ namespace Debond
                 if (friction.has(tangent.index))
                   result.nodes[i].slides =
                     result.nodes[i].slides.value_or(false) ||
-                    s(tangent.index) != friction.place(tangent.index);
+                    friction.way(tangent.index, s) != 0.;
               }
         }
     }

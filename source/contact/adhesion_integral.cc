@@ -246,7 +246,9 @@ namespace Debond
   AdhesionIntegral<dim>::set_friction(const Friction &friction)
   {
     rubs           = friction;
-    friction_kinks = {rubs.bound, Eigen::VectorXd::Zero(rubs.bound.size())};
+    friction_kinks = {rubs.bound,
+                      Eigen::VectorXd::Zero(rubs.bound.size()),
+                      rubs.partner};
     update();
   }
 
@@ -334,7 +336,9 @@ namespace Debond
                                                Eigen::Index(list.size()));
     };
     if (!broken.slipped.empty())
-      friction_kinks = {vector(broken.pressed), vector(broken.slipped)};
+      friction_kinks = {vector(broken.pressed),
+                        vector(broken.slipped),
+                        rubs.partner};
     update();
   }
 
@@ -665,13 +669,23 @@ namespace Debond
     });
     // Friction: any force up to the bound where nothing slides, else the bound
     // against the way.
-    for (Eigen::Index i = 0; i < friction_kinks.weight.size(); ++i)
-      {
-        const double way = s(i) - friction_kinks.place(i);
-        const double phi = friction_kinks.weight(i);
-        forces[i].lower += way > delta[i] ? phi : -phi;
-        forces[i].upper += way < -delta[i] ? -phi : phi;
-      }
+    const Kinks &kinks = friction_kinks;
+    for (Eigen::Index i = 0; i < kinks.weight.size(); ++i)
+      if (kinks.has(i))
+        {
+          const double way = s(i) - kinks.place(i);
+          // Of the plane of a pair, in which it is the cosine that counts.
+          const double across =
+            kinks.is_paired(i) ?
+              s(kinks.partner[i]) - kinks.place(kinks.partner[i]) :
+              0.;
+          const auto cosine = [&](const double along, const double at_rest) {
+            const double length = std::hypot(along, across);
+            return length == 0. ? at_rest : along / length;
+          };
+          forces[i].lower += kinks.weight(i) * cosine(way - delta[i], -1.);
+          forces[i].upper += kinks.weight(i) * cosine(way + delta[i], 1.);
+        }
     return forces;
   }
 

@@ -255,15 +255,12 @@ namespace Debond
           name_of("coefficient", p.friction.coefficient) :
           name_of("bound", p.friction.bound);
       using Rule = ContactQuadratureParameters::Rule;
-      refuse({{p.dimension != 2,
-               entry,
-               "is for plane bodies and those of revolution"},
-              {p.degree != 1, entry, "needs linear displacements"},
+      refuse({{p.degree != 1, entry, "needs linear displacements"},
               {p.quadrature.rule != Rule::nodal,
                entry,
-               "needs Contact law/Quadrature = nodal, with which one unknown "
+               "needs Contact law/Quadrature = nodal, with which one node "
                "slides at a time"}},
-             {"Dimension", "Mesh/Degree", "Contact law/Quadrature"},
+             {"Mesh/Degree", "Contact law/Quadrature"},
              table);
       // Fixed everywhere is the default, which gives way to friction; a
       // boundary that is fixed by its name has none.

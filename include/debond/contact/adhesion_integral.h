@@ -52,6 +52,9 @@ namespace Debond
     /// Whose force presses; none for those of vertices that supports hold.
     std::vector<unsigned int> node = {};
 
+    /// Of both tangents at a vertex of a solid the other one, see Kinks.
+    std::vector<Eigen::Index> partner = {};
+
     /// The vertices without friction, although it belongs there, since supports
     /// move them along the boundary.
     unsigned int n_moved = 0;

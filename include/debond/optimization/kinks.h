@@ -4,13 +4,23 @@
 
 #include <debond/base/views.h>
 
+#include <Eigen/SparseCore>
+
+#include <vector>
+
 namespace Debond
 {
   /// The sum of weight_i |x_i - place_i|, weight_i >= 0: friction with a given
-  /// bound. Both are empty if there is no such term.
+  /// bound. All lists are empty if there is no such term.
+  ///
+  /// A component may have a partner, with which it has one term, the weight of
+  /// both times the length of (x_i - place_i, x_j - place_j): a cone.
   struct Kinks
   {
     Eigen::VectorXd weight = {}, place = {};
+
+    /// Of each component its partner, or itself; empty if there are no pairs.
+    std::vector<Eigen::Index> partner = {};
 
     /// Returns whether x_i has a term.
     bool
@@ -19,19 +29,88 @@ namespace Debond
       return weight.size() > 0 && weight(i) > 0.;
     }
 
+    bool
+    is_paired(const Eigen::Index i) const
+    {
+      return has(i) && !partner.empty() && partner[i] != i;
+    }
+
+    /// The first components of all pairs.
+    std::vector<Eigen::Index>
+    pairs() const
+    {
+      std::vector<Eigen::Index> result;
+      for (Eigen::Index i = 0; i < Eigen::Index(partner.size()); ++i)
+        if (is_paired(i) && i < partner[i])
+          result.push_back(i);
+      return result;
+    }
+
+    /// The components of a pair, from its first one.
+    std::vector<Eigen::Index>
+    pair(const Eigen::Index i) const
+    {
+      return {i, partner[i]};
+    }
+
+    /// The length of x - place for the component, or for its pair.
+    double
+    way(const Eigen::Index i, const VectorView &x) const
+    {
+      return is_paired(i) ?
+               std::hypot(x(i) - place(i), x(partner[i]) - place(partner[i])) :
+               std::abs(x(i) - place(i));
+    }
+
+    /// That of a force.
+    double
+    size(const Eigen::Index i, const VectorView &force) const
+    {
+      return is_paired(i) ? std::hypot(force(i), force(partner[i])) :
+                            std::abs(force(i));
+    }
+
     double
     value(const VectorView &x) const
     {
-      return weight.size() == 0 ? 0. : weight.dot((x - place).cwiseAbs());
+      double sum = 0.;
+      for (Eigen::Index i = 0; i < weight.size(); ++i)
+        if (has(i) && !(is_paired(i) && partner[i] < i))
+          sum += weight(i) * way(i, x);
+      return sum;
     }
 
-    /// The derivative by x_i, 0 at the kink itself.
-    double
-    derivative(const Eigen::Index i, const double x_i) const
+    /// The gradient, with 0 at kinks themselves.
+    Eigen::VectorXd
+    gradient(const VectorView &x) const
     {
-      return !has(i) || x_i == place(i) ?
-               0. :
-               std::copysign(weight(i), x_i - place(i));
+      Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size());
+      for (Eigen::Index i = 0; i < weight.size(); ++i)
+        if (const double length = has(i) ? way(i, x) : 0.; length > 0.)
+          result(i) = weight(i) * ((x(i) - place(i)) / length);
+      return result;
+    }
+
+    /// The second derivative, without what is at its kink.
+    Eigen::SparseMatrix<double>
+    curvature(const VectorView &x) const
+    {
+      // Of w |v| it is w / |v| across v, and nothing along it.
+      std::vector<Eigen::Triplet<double>> entries;
+      for (const Eigen::Index i : pairs())
+        if (const double length = way(i, x); length > 0.)
+          {
+            const Eigen::Index    j = partner[i];
+            const Eigen::Vector2d across(-(x(j) - place(j)) / length,
+                                         (x(i) - place(i)) / length);
+            for (const auto &[row, k] : {std::make_pair(i, 0), {j, 1}})
+              for (const auto &[column, l] : {std::make_pair(i, 0), {j, 1}})
+                entries.emplace_back(
+                  row, column, weight(i) / length * across(k) * across(l));
+          }
+      Eigen::SparseMatrix<double> result(x.size(), x.size());
+      result.setFromTriplets(entries.begin(), entries.end());
+      return result;
     }
   };
 } // namespace Debond

@@ -2,7 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/global/bond_bound.h>
 #include <debond/optimization/global/convexity_shift.h>
-#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/cone_qp.h>
 
 namespace Debond
 {
@@ -96,8 +96,32 @@ namespace Debond
                   // l, m, end and t are negative.
                   M(j, j) += k(j) * std::clamp(slope / l(i), d, 1. + d);
                 }
-            node.x = solve_bound_qp(M, g, Bounds(upper, phi.kinks()), active).x;
+            const Bounds with_kinks(upper, phi.kinks());
+            node.x = ConeQP(M, g, with_kinks).solve(node.x, active).x;
           }
+      }
+
+      /// The force n w of a plane below each pair of kinks, w |v| >= w n'v
+      /// with |n| <= 1, where @p rest is A x - g: that of the cone at x.
+      Eigen::VectorXd
+      forces_of_pairs(const Eigen::VectorXd &rest) const
+      {
+        const Kinks    &kinks  = phi.kinks();
+        Eigen::VectorXd result = Eigen::VectorXd::Zero(n);
+        for (const Eigen::Index i : kinks.pairs())
+          {
+            const auto      pair = kinks.pair(i);
+            Eigen::Vector2d v    = node.x(pair) - kinks.place(pair);
+            // At its kink a pair balances the rest.
+            const bool slides = !v.isZero(0.);
+            if (!slides)
+              v = -(rest + D.cwiseProduct(node.x))(pair) / kinks.weight(i);
+            const double size = v.norm();
+            if (slides || size > 1.)
+              v /= size * (1. + 4. * Tolerance::epsilon);
+            result(pair) = kinks.weight(i) * v;
+          }
+        return result;
       }
 
       /// Sets the bounds and returns that without a choice.
@@ -115,9 +139,13 @@ namespace Debond
           (n + 16.) * std::numeric_limits<long double>::epsilon();
         // r_j is a double in what follows; its error bounds what that and the
         // sum have lost.
-        const Eigen::VectorXd r = (Ax - g.cast<long double>()).cast<double>(),
-                              error = Tolerance::epsilon *
-                                        (r.cwiseAbs() + g.cwiseAbs()) +
+        const Eigen::VectorXd rest =
+                                (Ax - g.cast<long double>()).cast<double>(),
+                              of_pairs = forces_of_pairs(rest),
+                              r        = rest + of_pairs,
+                              error    = Tolerance::epsilon *
+                                        (rest.cwiseAbs() + of_pairs.cwiseAbs() +
+                                         g.cwiseAbs()) +
                                       (tiny * terms).cast<double>(),
                               l = phi.displacements(node.x);
         double size             = static_cast<double>(x.dot(Ax));
@@ -134,9 +162,12 @@ namespace Debond
             // What the term of the bond is at x itself: by how much it is above
             // its least value says where a choice would raise the bound.
             bounds(i, 2) += node.x(j) * (r(j) + 0.5 * D(j) * node.x(j));
-            const double w = phi.kinks().has(j) ? phi.kinks().weight(j) : 0.;
-            const double p = w > 0. ? phi.kinks().place(j) : 0.;
-            bounds(i, 2) += w * std::abs(node.x(j) - p);
+            const Kinks &kinks     = phi.kinks();
+            const bool   is_single = kinks.has(j) && !kinks.is_paired(j);
+            const double w         = is_single ? kinks.weight(j) : 0.;
+            const double p         = kinks.has(j) ? kinks.place(j) : 0.;
+            const double constant  = -of_pairs(j) * p;
+            bounds(i, 2) += w * std::abs(node.x(j) - p) + constant;
             for (const int broken : {0, 1})
               {
                 // A kink makes the term one on each side of it. The least value
@@ -160,8 +191,8 @@ namespace Debond
                 };
                 const double least = std::min(least_with(r(j) - error(j)),
                                               least_with(r(j) + error(j)));
-                bounds(i, broken) += least;
-                size += std::abs(least) + w * std::abs(p);
+                bounds(i, broken) += least + constant;
+                size += std::abs(least) + w * std::abs(p) + std::abs(constant);
               }
           }
         const Eigen::VectorXd least = bounds.leftCols(2).rowwise().minCoeff();

@@ -249,12 +249,12 @@ namespace Debond
           // times what the projection has moved.
           if (near(i) != result.x(i))
             left += M.col(i) * (result.x(i) - near(i));
-        double worst = 0.;
+        const Eigen::VectorXd without_kinks = left + r - load;
+        double                worst         = 0.;
         for (unsigned int i = 0; i < n; ++i)
           worst = std::max(worst,
-                           near(i) == b(i) ?
-                             -bounds.hold(i, left(i) + r(i) - load(i)) :
-                             std::abs(left(i)));
+                           near(i) == b(i) ? -bounds.hold(i, without_kinks) :
+                                             std::abs(left(i)));
         return worst <= tolerance * r.lpNorm<Eigen::Infinity>();
       }
 
@@ -300,8 +300,8 @@ namespace Debond
             const double          mu_noise = force_noise(x);
             for (unsigned int i = 0; i < n; ++i)
               {
-                active[i] = bounds.state(i, x(i));
-                if (is_active(active[i]) && bounds.hold(i, pull(i)) < -mu_noise)
+                active[i] = bounds.state(i, x);
+                if (is_active(active[i]) && bounds.hold(i, pull) < -mu_noise)
                   active[i] = bounds.left_to(i, pull(i));
               }
             // If the whole step stays within the bounds and the kept
@@ -334,7 +334,7 @@ namespace Debond
         const double least   = -force_noise(result.x);
         for (unsigned int i = 0; i < n; ++i)
           if (is_active(active[i]) ?
-                bounds.hold(i, force(i)) < least :
+                bounds.hold(i, force) < least :
                 bounds.excess(i, result.x(i), active[i]) > x_noise)
             return false;
         return true;
@@ -382,7 +382,7 @@ namespace Debond
     // bound or kink. Either way the index changes sides.
     std::vector<unsigned int> wrong;
     for (unsigned int i = 0; i < active.size(); ++i)
-      if (is_active(active[i]) ? bounds.hold(i, force(i)) < -force_noise :
+      if (is_active(active[i]) ? bounds.hold(i, force) < -force_noise :
                                  bounds.excess(i, x(i), active[i]) > x_noise)
         wrong.push_back(i);
     if (wrong.size() < fewest)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/cone_qp.h>
 
 #include <Eigen/QR>
 
@@ -64,7 +65,7 @@ namespace Debond
         (N.transpose() * (phi.curvature(Eigen::VectorXd::Zero(s.size())) * N))
           .norm();
     for (unsigned int i = 0; i < s.size(); ++i)
-      active[i] = bounds.state(i, s(i));
+      active[i] = bounds.state(i, s);
   }
 
 
@@ -93,6 +94,8 @@ namespace Debond
           S_s += s(j) * S.col(j);
           terms += std::abs(s(j)) * S.col(j).cwiseAbs();
         }
+    const Eigen::VectorXd force = g - S_s - xi;
+    const Eigen::VectorXd left  = force - bounds.kinks.gradient(s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         // What rounding leaves of the forces and of the energy goes with the
@@ -103,20 +106,17 @@ namespace Debond
         energy += 0.5 * s(i) * S_s(i);
         work += g(i) * s(i);
         // S s + xi - g + mu = 0,  mu >= 0,  s <= b,  mu'(s - b) = 0, b being
-        // the upper bounds; at a kink with any force up to its weight.
-        const double mu =
-          g(i) - S_s(i) - xi(i) - bounds.kinks.derivative(i, s(i));
+        // the upper bounds; at a kink mu is of any size up to its weight.
+        const bool is_at = bounds.is_at(i, s);
         violation =
           std::max(violation,
-                   s(i) != upper(i)    ? std::abs(mu) :
-                   bounds.kinks.has(i) ? std::abs(mu) - bounds.kinks.weight(i) :
-                                         -mu);
+                   is_at ? -bounds.hold(i, force) : std::abs(left(i)));
         largest_force = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
-        state.n_active += s(i) == upper(i) && !bounds.kinks.has(i);
+        state.n_active += is_at && !bounds.kinks.has(i);
         // A maximum would lose it.
-        if (std::isnan(mu))
-          violation = largest_force = mu;
+        if (std::isnan(left(i)))
+          violation = largest_force = left(i);
       }
     state.functional = energy - work + change;
     state.functional_rounding =
@@ -169,14 +169,12 @@ namespace Debond
       active = guess->active_set(M, majorant.E, r, upper);
     const Eigen::VectorXd before = s;
     const BoundQPResult   qp =
-      solve_bound_qp(M,
-                     r,
-                     bounds,
-                     active,
-                     is_trial && tolerance >= Tolerance::rough_majorant ?
-                       tolerance :
-                       0.,
-                     factor);
+      ConeQP(M, r, bounds)
+        .solve(before,
+               active,
+               is_trial && tolerance >= Tolerance::rough_majorant ? tolerance :
+                                                                    0.,
+               factor);
     if (qp.status != SolverStatus::interrupted)
       s = qp.x;
     if (can_be_verified(qp.status) && phi.softens())

@@ -21,10 +21,7 @@ namespace Debond
   Eigen::VectorXd
   CondensedProblem::slope_of_phi() const
   {
-    Eigen::VectorXd result = phi.subgradient(s);
-    for (Eigen::Index i = 0; i < bounds.kinks.weight.size(); ++i)
-      result(i) += bounds.kinks.derivative(i, s(i));
-    return result;
+    return phi.subgradient(s) + bounds.kinks.gradient(s);
   }
 
 
@@ -34,7 +31,7 @@ namespace Debond
   {
     std::vector<unsigned int> free;
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (s(i) != upper(i))
+      if (!bounds.is_at(i, s))
         free.push_back(i);
     // All in contact: the majorant has said all.
     if (free.empty())
@@ -42,7 +39,7 @@ namespace Debond
     // The second derivative of J itself, which for pieces that soften is less
     // than that of the majorant.
     Eigen::MatrixXd A = S;
-    A += phi.second_derivative(s);
+    A += phi.second_derivative(s) + bounds.kinks.curvature(s);
     const Eigen::VectorXd force = g - S * s - slope_of_phi();
     const DenseCholesky   factor_of_J(A(free, free));
     Eigen::VectorXd       way;
@@ -92,8 +89,7 @@ namespace Debond
     // is a matter of the next majorant.
     double limit = infinity;
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (const double way = upper(i) - s(i); ds(i) * way > 0.)
-        limit = std::min(limit, way / ds(i));
+      limit = std::min(limit, bounds.way_to(i, s, ds));
     const Eigen::VectorXd start     = s;
     const Eigen::VectorXd rigid     = N.cols() > 0 ?
                                         Eigen::VectorXd(N * (N.transpose() * ds)) :
@@ -104,7 +100,8 @@ namespace Debond
       s = start + t * ds;
       // Rounding must not lead beyond.
       for (Eigen::Index i = 0; i < s.size(); ++i)
-        if ((s(i) > upper(i)) != (start(i) > upper(i)))
+        if (!bounds.kinks.is_paired(i) &&
+            (s(i) > upper(i)) != (start(i) > upper(i)))
           s(i) = upper(i);
       return t * stiffness - work + slope_of_phi().dot(ds);
     };

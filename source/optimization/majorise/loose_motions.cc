@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/cone_qp.h>
 #include <debond/optimization/polar_cone.h>
 
 #include <Eigen/Eigenvalues>
@@ -45,18 +46,27 @@ namespace Debond
         const Eigen::VectorXd before = rest;
         for (Eigen::Index i = 0; i < towards.cols(); ++i)
           {
-            const bool   has_kink = bounds.kinks.has(i);
-            const auto   column   = has_kink ? motions.col(i) : towards.col(i);
-            const double square   = column.squaredNorm();
+            // Of pairs both at once.
+            if (bounds.kinks.is_paired(i) && bounds.kinks.partner[i] < i)
+              continue;
+            const bool                      has_kink = bounds.kinks.has(i);
+            const std::vector<Eigen::Index> all =
+              bounds.kinks.is_paired(i) ? bounds.kinks.pair(i) :
+                                          std::vector<Eigen::Index>{i};
+            const Eigen::MatrixXd columns =
+              (has_kink ? motions : towards)(Eigen::all, all);
+            const double square = columns.squaredNorm();
             if (square == 0.)
               continue;
-            const double most = has_kink ? bounds.kinks.weight(i) : infinity;
-            const double next =
-              std::clamp(amount(i) + column.dot(rest) / square,
-                         has_kink ? -most : 0.,
-                         most);
-            rest -= (next - amount(i)) * column;
-            amount(i) = next;
+            Eigen::VectorXd next =
+              amount(all) + columns.transpose() * rest / square;
+            if (!has_kink)
+              next = next.cwiseMax(0.);
+            else if (const double size = next.norm();
+                     size > bounds.kinks.weight(i))
+              next *= bounds.kinks.weight(i) / size;
+            rest -= columns * (next - amount(all));
+            amount(all) = next;
           }
         if ((rest - before).norm() <= Tolerance::epsilon * forces.norm())
           return rest;
@@ -106,8 +116,9 @@ namespace Debond
     Minimisation    result = {SolverStatus::quadratic_program, 0, 0};
     for (unsigned int k = 0; k < maximum_proximal_steps; ++k)
       {
-        const BoundQPResult qp = solve_bound_qp(
-          proximal, r + delta * Z * (Z.transpose() * x), bounds, active);
+        const Eigen::VectorXd load = r + delta * Z * (Z.transpose() * x);
+        const BoundQPResult   qp =
+          ConeQP(proximal, load, bounds).solve(x, active);
         result.active_set_steps += qp.steps;
         if (!can_be_verified(qp.status))
           {
@@ -173,9 +184,8 @@ namespace Debond
       further = infinity;
     // To the next bound, or kink ahead.
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      if (bounds.kinks.has(i) ? way[i] * (upper[i] - x[i]) > 0. :
-                                way[i] > least)
-        further = std::min(further, (upper[i] - x[i]) / way[i]);
+      if (bounds.kinks.has(i) || way[i] > least)
+        further = std::min(further, bounds.way_to(i, x, way));
     // Without any this has no end.
     if (std::isinf(further))
       return false;

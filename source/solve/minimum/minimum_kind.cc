@@ -60,12 +60,13 @@ namespace Debond
     const Kinks              &kinks = adhesion.kinks();
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (kinks.has(i) ? s(i) != kinks.place(i) ||
-                           std::abs(pressure(i)) >= kinks.weight(i) - least :
+      if (kinks.has(i) ? kinks.way(i, s) != 0. ||
+                           kinks.size(i, pressure) >= kinks.weight(i) - least :
                          s(i) < 0. || pressure(i) <= least)
         free.push_back(i);
     Eigen::MatrixXd A = S;
-    A += least_second_derivative(adhesion, s, Tolerance::at_kink);
+    A += least_second_derivative(adhesion, s, Tolerance::at_kink) +
+         kinks.curvature(s);
     return is_safely_positive_definite(A(free, free)) ?
              MinimumKind::local_minimum :
              MinimumKind::stationary;

@@ -80,8 +80,9 @@ namespace Debond
         , solver(correction_solver)
         , interruption(interrupted_by)
         , normals(problem.unknowns().contact().dofs())
-        , bounds(problem.unknowns().contact().boundary().upper_bounds(),
-                 phi.kinks())
+        , bounds(Bounds(problem.unknowns().contact().boundary().upper_bounds(),
+                        phi.kinks())
+                   .with_pairs_as_at(problem.unknowns().contact().trace(start)))
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
         , f(load_at(problem, factors))
@@ -90,7 +91,7 @@ namespace Debond
         // and mostly the last one.
         const Eigen::VectorXd s = problem.unknowns().contact().trace(start);
         for (unsigned int i = 0; i < s.size(); ++i)
-          active.push_back(bounds.state(i, s(i)));
+          active.push_back(bounds.state(i, s));
         // The energy that rounding of w leaves of a lifting that w undoes.
         constexpr long double epsilon  = Tolerance::epsilon;
         const DofVector       diagonal = problem.diagonal();
@@ -109,7 +110,14 @@ namespace Debond
         // If Phi softens, majorants come to a minimum in the limit only. Next
         // to it Newton steps with Phi'' get there, and if Phi does not soften
         // both are the same.
-        return majorant.touch(s, phi.subgradient(s), phi.second_derivative(s));
+        // So do they with friction whose direction turns.
+        const Eigen::VectorXd of_kinks = phi.kinks().gradient(s);
+        Eigen::VectorXd       slope    = phi.subgradient(s);
+        for (Eigen::Index i = 0; i < s.size(); ++i)
+          if (phi.kinks().is_paired(i))
+            slope(i) += of_kinks(i);
+        return majorant.touch(
+          s, slope, phi.second_derivative(s) + phi.kinks().curvature(s));
       }
 
       bool

@@ -6,6 +6,8 @@
 #include <debond/mesh/field_value.h>
 #include <debond/solve/scene/scene_conditions.h>
 
+#include <numeric>
+
 namespace Debond
 {
   namespace
@@ -501,6 +503,24 @@ namespace Debond
       for (const auto &tangent : boundary.nodes[i].tangents)
         if (!tangent.is_held)
           result.node[tangent.index] = i;
+    // Along both tangents of a vertex of a solid it is one force.
+    if constexpr (dim == 3)
+      {
+        result.partner.resize(boundary.n_unknowns());
+        std::iota(result.partner.begin(), result.partner.end(), 0);
+        const auto join = [&](const auto &tangents) {
+          if (tangents.size() == 2 && !tangents[0].is_held &&
+              !tangents[1].is_held)
+            {
+              result.partner[tangents[0].index] = tangents[1].index;
+              result.partner[tangents[1].index] = tangents[0].index;
+            }
+        };
+        for (const auto &node : boundary.nodes)
+          join(node.tangents);
+        for (const auto &vertex : boundary.held_vertices)
+          join(vertex.tangents);
+      }
     return result;
   }
 

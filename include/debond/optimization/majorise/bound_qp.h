@@ -2,6 +2,7 @@
 #ifndef debond_optimization_majorise_bound_qp_h
 #define debond_optimization_majorise_bound_qp_h
 
+#include <debond/base/infinity.h>
 #include <debond/linear_algebra/bordered_cholesky.h>
 #include <debond/optimization/kinks.h>
 #include <debond/optimization/status.h>
@@ -39,11 +40,51 @@ namespace Debond
           place(i) = kinks.place(i);
     }
 
-    /// The entry of the active set for a component at @p x_i.
-    char
-    state(const Eigen::Index i, const double x_i) const
+    /// What is left of the kinks where they are linear in pairs about @p x:
+    /// those at their kinks stay there, and others are free.
+    Bounds
+    with_pairs_as_at(const Eigen::VectorXd &x) const
     {
-      return x_i == place(i) ? 1 : x_i > place(i) ? above_kink : 0;
+      Kinks           rest  = kinks;
+      Eigen::VectorXd upper = place;
+      rest.partner.clear();
+      for (Eigen::Index i = 0; i < x.size(); ++i)
+        if (kinks.is_paired(i))
+          {
+            upper(i)       = infinity;
+            rest.weight(i) = kinks.way(i, x) == 0. ? infinity : 0.;
+          }
+      return {upper, rest};
+    }
+
+    bool
+    is_at(const Eigen::Index i, const Eigen::VectorXd &x) const
+    {
+      return kinks.has(i) ? kinks.way(i, x) == 0. : x(i) == place(i);
+    }
+
+    /// The entry of the active set for a component of @p x.
+    char
+    state(const Eigen::Index i, const Eigen::VectorXd &x) const
+    {
+      return is_at(i, x) ? 1 : x(i) > place(i) ? above_kink : 0;
+    }
+
+    /// The t > 0 at which x + t d comes to the bound or kink of a component, of
+    /// a pair next to it; infinity if it does not.
+    double
+    way_to(const Eigen::Index     i,
+           const Eigen::VectorXd &x,
+           const Eigen::VectorXd &d) const
+    {
+      double work = d(i) * (place(i) - x(i)), square = d(i) * d(i);
+      if (kinks.is_paired(i))
+        {
+          const Eigen::Index j = kinks.partner[i];
+          work += d(j) * (place(j) - x(j));
+          square += d(j) * d(j);
+        }
+      return work > 0. ? work / square : infinity;
     }
 
     /// How far @p x_i is outside of the side that @p state says.
@@ -65,9 +106,9 @@ namespace Debond
     /// By how much a force, without that of the kink, holds a component that is
     /// active.
     double
-    hold(const Eigen::Index i, const double force_i) const
+    hold(const Eigen::Index i, const Eigen::VectorXd &force) const
     {
-      return kinks.has(i) ? kinks.weight(i) - std::abs(force_i) : force_i;
+      return kinks.has(i) ? kinks.weight(i) - kinks.size(i, force) : force(i);
     }
 
     /// The state of a component that leaves its place.
@@ -154,7 +195,7 @@ namespace Debond
    *
    * A component with a kink is at it, which is active, or on a given side of
    * it, where its term is a force, with which M stays what it is. There are no
-   * bounds at kinks.
+   * bounds at kinks, and no pairs of these, which are for ConeQP.
    *
    * Wrong indices are exchanged by ActiveSetRule. Matrices of slender bodies,
    * where fourth derivatives count, can make that wander; then projected Newton
