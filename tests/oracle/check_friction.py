@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_friction.py DEBOND: friction. A bar on a rough table, pulled and let go, in closed form;
 blocks beside finite elements and a coordinate descent of its own, with bonds that break and with
-several steps; turned, mirrored and in other units; what falls, and what is proved."""
+several steps; turned, mirrored and in other units; what falls, and what is proved; triangles of
+which Coulomb's friction has one state or three."""
 import math
 import os
 import pathlib
@@ -14,6 +15,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import msh
 from run_scenes import NO_PICTURES, Scenes, full_entry
 
 scenes = Scenes(sys.argv[1])
@@ -414,6 +416,65 @@ def check_proof_of_three_bonds():
                        "Traction top=0.02; 0.05", "Bond stiffness=10", "Bond threshold=0.01",
                        f"Contact law/Friction bound={bound}", "Prove=true")
         check("word", result["minimum"]["state"] == "global", result["minimum"])
+
+
+def states_of_node(S, g, mu):
+    """All (u_n, u_t) after one step from rest of a node with the stiffness S and the load g, along
+    the normal into the foundation and the tangent: where it sticks, slides either way, is off."""
+    (a, b), (_, c) = S
+    (n, t), states = g, []
+    if n >= 0. and abs(t) <= mu * n:
+        states.append((0., 0.))
+    for side in (1., -1.):
+        u = (t - side * mu * n) / (c - side * mu * b)
+        if u * side > 0. and n >= b * u:
+            states.append((0., u))
+    u = np.linalg.solve(S, g)
+    if u[0] < 0.:
+        states.append(tuple(u))
+    return states
+
+
+def check_triangles():
+    """One triangle with one node that is free, in contact and loaded. With mu beyond the ratio
+    k = c / |b| of its stiffnesses three states exist where the load along the tangent, on the side
+    of b, is between k and mu times that along the normal: the node sticks, slides or is off.
+    Elsewhere, and with smaller mu, there is one. A note says so, and what sticks is taken."""
+    random, n_states = Random(4), []
+    for case in range(32):
+        scenes.section(f"triangle {case}")
+        E, nu = 10**random.uniform(-1, 4), random.uniform(0.1, 0.45)
+        size = 10**random.uniform(-4, 1)
+        L, top = random.uniform(0.5, 2), (random.uniform(-1, 0.6), random.uniform(0.4, 1.5))
+        # The gradient of the basis function, and the stiffness in plane strain.
+        x, y = -1 / L, -(L - top[0]) / (L * top[1])
+        A = E / ((1 + nu) * (1 - 2 * nu)) * L * top[1] / 2
+        S = A * np.array([[(1 - nu) * y * y + (0.5 - nu) * x * x, -0.5 * x * y],
+                          [-0.5 * x * y, (1 - nu) * x * x + (0.5 - nu) * y * y]])
+        k, side = S[1, 1] / abs(S[0, 1]), math.copysign(1., S[0, 1])
+        mu = k * (0.3, 0.8, 1.3, 3.)[case % 4]
+        g = E * size * np.array([1., side * random.uniform(-0.3, 1.3) * max(k, mu)])
+        states = states_of_node(S, g, mu)
+        n_states.append(len(states))
+        file = f"triangle-{case}.msh"
+        (scenes.directory / file).write_text(msh.text(
+            [(0., 0.), (L, 0.), top], [((1,), (0, 1)), ((2,), (1, 2)), ((3,), (2, 0))],
+            [((4,), (0, 1, 2))],
+            {(1, 1): "bottom", (1, 2): "right", (1, 3): "left", (2, 4): "all"}))
+        # Half of a force on a side is at each of its ends.
+        result = solve("Source=file", "File=" + file, f"Young modulus={E!r}",
+                       f"Poisson ratio={nu!r}", "Hypothesis=plane strain",
+                       "Clamped boundaries=right", "Contact boundary=bottom", "Law=none",
+                       f"Force left={2 * g[1]!r}; {-2 * g[0]!r}",
+                       f"Contact law/Friction coefficient={mu!r}", "Factors=1", *PATH)
+        check("word", result["minimum"]["state"] == "stationary", result["errors"])
+        check("note", any("several states" in note for note in result["notes"])
+              == (len(states) > 1), (states, result["notes"]))
+        row = result["profile"][0]
+        for name, value, expected in zip(("u_nu", "slip"), (row["u_nu"], row["slip_x"]), states[0]):
+            close(name, value, expected, 1e-9, size)
+    check("some have three states, most have one", set(n_states) == {1, 3}
+          and 4 <= n_states.count(3) <= 16, n_states)
 
 
 scenes.all_of(globals())
