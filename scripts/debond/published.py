@@ -151,6 +151,57 @@ def rough_square(run):
                                                                profile["slip_x"]))
 
 
+@problem("punch with a rounded edge", "Konter, NAFEMS (2006); code_aster V6.01.122, SSNA122",
+         0.03, 0.01, 0.01, 0.08, 0.03, 0.05, 0.01, 0.08)
+def rounded_punch(run):
+    for mu, stated in (0.1, {"A": (0.128580, 88.6652), "B": (0.130794, 95.4740)}), (
+            0, {"A": (0.130734, 91.1006), "B": (0.132941, 94.1221)}):
+        results = run("published/rounded-punch", {"Constants/mu": mu})
+        for model, (lift, stress) in stated.items():
+            yield (f"displacement of the middle, friction {mu}, model {model}, mm", lift,
+                   -results.summary["probes"]["middle"][1])
+            yield (f"stress there, friction {mu}, model {model}, MPa", stress,
+                   results.profile["normal_force_density"][0])
+
+
+@problem("end-notched flexure, faces that rub", "beam theory", 0.01, 0.01, 0.02, 0.01)
+def rough_crack(run):
+    E, L, h, a, P, mu = 70000., 60., 2., 40., 4., 0.5
+    EI = E * h**3 / 12.
+    at_once = {"Load path/Factors": 1}
+    smooth = run("published/rough-crack", {"Constants/mu": 0, **at_once})
+    deflection = -smooth.summary["probes"]["middle"][1]
+    yield "deflection without friction, mm", P * (2. * L**3 + 3. * a**3) / (96. * EI), deflection
+    path = run("published/rough-crack").load_path
+    yield ("what friction takes of it, mm", mu * P * a**2 * h / (32. * EI),
+           deflection + path["probe_middle_y"][path["factor"] == 1.][0])
+    # It slides back below the part q of the force.
+    slip, q = h * P * (a**2 / 8. - mu * h * a / 6.) / EI, (3. * a - 4. * mu * h) / (
+        3. * a + 4. * mu * h)
+    yield ("energy lost up to P and down to 0.1 P, N", mu * P * slip / 8. * (1. + q - 0.01 / q),
+           path["dissipated_energy"][-1])
+    rate = [run("published/rough-crack", {"Constants/mu": mu, "Constants/a": a + da, **at_once}
+                ).load_path["elastic_energy"][0] * da for mu in (0, 0.5) for da in (1., -1.)]
+    yield ("energy release rate, with friction to without, (1 - 2/3 mu h / a)^2",
+           (1. - 2. / 3. * mu * h / a)**2, sum(rate[2:]) / sum(rate[:2]))
+
+
+@problem("two beams that slide on each other", "Goodman, Klumpp, J. Appl. Mech. 23 (1956)",
+         0.02, 0.02, 0.01, 0.01)
+def slip_damping(run):
+    E, L, h, p, mu = 70000., 40., 2., 1., 0.3
+    first = 4. / 3. * mu * p * h
+    P = 3. * first
+    for cell in 0.25, 0.125:
+        path = run("published/slip-damping", {"Constants/cell": cell}).load_path
+        up = path["factor"] == 1.
+        yield (f"deflection at the largest force, cells of {cell} mm, mm",
+               2. * (P - mu * p * h) * L**3 / (E * h**3), path["probe_end_y"][up][0])
+        yield (f"energy lost in a cycle, cells of {cell} mm, N",
+               8. * mu * p * (P - first) * L**3 / (E * h**2),
+               numpy.diff(path["dissipated_energy"][up])[0])
+
+
 @problem("Hertz, sphere on a rigid plane", "Johnson, Contact Mechanics (1985), 4.2", 0.01)
 def hertz_sphere(run):
     R, results = 10., run("published/hertz-sphere")
