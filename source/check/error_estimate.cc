@@ -673,26 +673,27 @@ namespace Debond
         return along + r_nu * normal;
       }
 
-      /// What friction may bear along a face at a place: between its vertices
-      /// it is linear.
+      /// What friction may bear along a face at a place: between its nodes it
+      /// is as displacements are.
       Interval
       friction_along(const typename ContactBoundary<dim>::Face &face,
                      const std::array<double, dim>             &coordinates,
                      const dealii::Tensor<1, dim>              &direction) const
       {
         const Kinks &friction = given.adhesion.kinks();
+        const auto   shape    = bernstein(coordinates, boundary.degree);
         Interval     sum      = {0., 0.};
-        for (unsigned int k = 0; k < dim; ++k)
+        for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           if (!face.is_held(k))
             {
-              const auto            &node  = boundary.nodes[face.nodes[k]];
+              const auto            &node  = boundary.nodes[face.node(k)];
               double                 bound = 0.;
               dealii::Tensor<1, dim> way;
               for (const auto &tangent : node.tangents)
                 if (!tangent.is_held && friction.has(tangent.index))
                   {
-                    bound = friction.weight(tangent.index) * coordinates[k] /
-                            node.measure;
+                    bound =
+                      friction.weight(tangent.index) * shape[k] / node.measure;
                     way += (s(tangent.index) - friction.place(tangent.index)) *
                            tangent.direction;
                   }

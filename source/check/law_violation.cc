@@ -172,14 +172,20 @@ namespace Debond
       }
 
     // Both components of friction in a plane may be what it can bear, and its
-    // size more than that.
-    const Kinks &kinks = adhesion.kinks();
+    // size more than that. It is what bonds leave of the force.
+    const Kinks    &kinks = adhesion.kinks();
+    Eigen::VectorXd left  = Eigen::VectorXd::Zero(n);
     for (const Eigen::Index i : kinks.pairs())
       if (kinks.way(i, s) == 0.)
-        for (const Eigen::Index j : kinks.pair(i))
-          upper[j] = std::max(upper[j],
-                              (kinks.size(i, forces) - kinks.weight(i)) /
-                                scales[j].force);
+        for (const Eigen::Index j : kinks.group(i))
+          left(j) = distance(forces(j),
+                             {at_s[j].lower + kinks.weight(j),
+                              at_s[j].upper - kinks.weight(j)});
+    for (const Eigen::Index i : kinks.pairs())
+      for (const Eigen::Index j : kinks.group(i))
+        upper[j] =
+          std::max(upper[j],
+                   (kinks.size(i, left) - kinks.weight(i)) / scales[j].force);
     return upper;
   }
 

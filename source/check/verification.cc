@@ -500,6 +500,7 @@ namespace Debond
       slips_of(problem.unknowns(), displacement);
 
     Verification<dim> result;
+    result.has_friction  = !bonds.friction().empty();
     result.state_names   = state_names(adhesion.adhesive_law());
     result.without_bonds = zone_without_bonds(boundary, adhesion);
     add_nodes(adhesion, s, forces, slips, result);

@@ -264,10 +264,28 @@ namespace Debond
     memory.rubbed += friction_kinks.value(s);
     memory.slipped.assign(s.data(), s.data() + s.size());
     // Where friction depends on the pressure that of the last step is the first
-    // guess.
-    const Eigen::VectorXd weight =
+    // guess for what slides. What sticks may need more than that as loads grow,
+    // and would be taken for what slides.
+    Eigen::VectorXd weight =
       rubs.depends_on_pressure() ? friction_kinks.weight : rubs.bound;
+    for (Eigen::Index i = 0; i < weight.size(); ++i)
+      if (rubs.coefficient(i) > 0. && friction_kinks.has(i) &&
+          friction_kinks.way(i, s) == 0.)
+        weight(i) = std::numeric_limits<double>::max();
     memory.pressed.assign(weight.data(), weight.data() + weight.size());
+    // Bonds that hold do not rub: with the damage d of a bond, d of the
+    // boundary around it is loose (Alfano and Sacco, Int. J. Numer. Meth. Engng
+    // 68, 2006). The damage is that before the step.
+    if (rubs.is_of_damage)
+      {
+        memory.loose.assign(n_unknowns(), 1.);
+        for (unsigned int i = 0; i < n_unknowns(); ++i)
+          if (const unsigned int node = rubs.node[i];
+              node != dealii::numbers::invalid_unsigned_int)
+            if (const BondScale bonds = contact_points.bonds_at(node);
+                bonds.energy > 0.)
+              memory.loose[i] = bonds.law->damage(reached(node));
+      }
     set_memory(memory);
     if (!rubs.depends_on_pressure())
       set_weights(rubs.bound);
@@ -285,19 +303,20 @@ namespace Debond
         weight(i) += rubs.coefficient(i) * std::max(0., forces(rubs.node[i]));
     const Eigen::VectorXd before = friction_kinks.weight;
     set_weights(weight);
-    const double change =
-      (friction_kinks.weight - before).template lpNorm<Eigen::Infinity>();
-    return change == 0. ? 0. : change / friction_kinks.weight.maxCoeff();
+    return (friction_kinks.weight - before).template lpNorm<Eigen::Infinity>();
   }
 
 
 
   template <int dim>
   void
-  AdhesionIntegral<dim>::stick()
+  AdhesionIntegral<dim>::stick(const std::vector<bool> &sticks)
   {
-    set_weights((rubs.coefficient.array() > 0.)
-                  .select(std::numeric_limits<double>::max(), rubs.bound));
+    Eigen::VectorXd weights = rubs.bound;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      if (rubs.coefficient(i) > 0. && sticks[i])
+        weights(i) = std::numeric_limits<double>::max();
+    set_weights(weights);
   }
 
 
@@ -306,16 +325,8 @@ namespace Debond
   void
   AdhesionIntegral<dim>::set_weights(Eigen::VectorXd weights)
   {
-    // Bonds that hold do not rub: with the damage d of a bond, d of the
-    // boundary around it is loose (Alfano and Sacco, Int. J. Numer. Meth. Engng
-    // 68, 2006). The damage is that before the step.
-    if (rubs.is_of_damage)
-      for (Eigen::Index i = 0; i < weights.size(); ++i)
-        if (const unsigned int node = rubs.node[i];
-            node != dealii::numbers::invalid_unsigned_int)
-          if (const BondScale bonds = contact_points.bonds_at(node);
-              bonds.energy > 0.)
-            weights(i) *= bonds.law->damage(reached(node));
+    for (std::size_t i = 0; i < broken.loose.size(); ++i)
+      weights(i) *= broken.loose[i];
     BondMemory memory = broken;
     memory.pressed.assign(weights.data(), weights.data() + weights.size());
     set_memory(memory);
@@ -348,15 +359,15 @@ namespace Debond
   void
   AdhesionIntegral<dim>::update()
   {
-    // Phi(0) is not zero in two cases only. A vertex with a prescribed
-    // displacement stretches the bonds beside it whatever s is, and bonds with
-    // a memory have dissipated energy. Otherwise there is nothing to be summed
-    // up, nor are there memories to be gathered.
+    // The energy of bonds at s = 0 is not zero in two cases only. A vertex with
+    // a prescribed displacement stretches the bonds beside it whatever s is,
+    // and bonds with a memory have dissipated energy. Otherwise there is
+    // nothing to be summed up, nor are there memories to be gathered.
     phi_at_zero = 0.;
     if (contact_boundary().held_vertices.empty() && broken.empty())
       return;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n_unknowns());
-    phi_at_zero                = value(zero);
+    phi_at_zero                = energy_of_bonds(zero);
     if (broken.reached.empty())
       return;
     // The largest memory that a node has by the points of the faces around it:
@@ -402,7 +413,7 @@ namespace Debond
 
   template <int dim>
   double
-  AdhesionIntegral<dim>::value(const VectorView &s) const
+  AdhesionIntegral<dim>::energy_of_bonds(const VectorView &s) const
   {
     // This is the quadrature of the last term of J. Bonds that vary have the
     // energy times j_1(s / length).
@@ -415,7 +426,7 @@ namespace Debond
     if (!broken.taken.empty())
       sum += std::accumulate(broken.taken.begin(), broken.taken.end(), 0.) -
              energy_at_rest();
-    return sum + friction_kinks.value(s) + broken.rubbed;
+    return sum + broken.rubbed;
   }
 
 

@@ -255,12 +255,12 @@ namespace Debond
           name_of("coefficient", p.friction.coefficient) :
           name_of("bound", p.friction.bound);
       using Rule = ContactQuadratureParameters::Rule;
-      refuse({{p.degree != 1, entry, "needs linear displacements"},
-              {p.quadrature.rule != Rule::nodal,
+      // What is quadratic has another rule for bonds, and friction of its own.
+      refuse({{p.degree == 1 && p.quadrature.rule != Rule::nodal,
                entry,
                "needs Contact law/Quadrature = nodal, with which one node "
                "slides at a time"}},
-             {"Mesh/Degree", "Contact law/Quadrature"},
+             {"Contact law/Quadrature"},
              table);
       // Fixed everywhere is the default, which gives way to friction; a
       // boundary that is fixed by its name has none.

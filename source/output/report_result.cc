@@ -317,7 +317,7 @@ namespace Debond
         texts.push_back(words("in shear broken ", n));
       record.line("contact nodes",
                   texts.empty() ? "all held" : join(texts, ", "));
-      if (verification.has_friction())
+      if (verification.has_friction)
         {
           const auto slides = [&](const bool wanted) {
             return std::count_if(verification.nodes.begin(),

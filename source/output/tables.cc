@@ -74,7 +74,7 @@ namespace Debond
         });
         table.add("shear_damage", nodes, &ContactNodeState::shear_damage);
       }
-    if (verification.has_friction())
+    if (verification.has_friction)
       table.add("slides", nodes, [](const auto &node) {
         return node.slides.value_or(false) ? 1 : 0;
       });

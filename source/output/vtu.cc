@@ -288,7 +288,7 @@ namespace Debond
           for (const ContactScalar &scalar : shear_scalars)
             values.push_back(scalar.value(state, measure));
         }
-      if (verification.has_friction())
+      if (verification.has_friction)
         values.push_back(face.is_held(k) ? nan : state.slides.value_or(false));
       if (!verification.breaks.empty())
         {
@@ -472,7 +472,7 @@ namespace Debond
         for (const ContactScalar &scalar : shear_scalars)
           grid.at_points.push_back({scalar.name});
       }
-    if (verification.has_friction())
+    if (verification.has_friction)
       grid.at_points.push_back({"slides"});
     if (!verification.breaks.empty())
       grid.at_points.push_back({"broken_at"});

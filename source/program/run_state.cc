@@ -35,7 +35,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 10, checksum " +
+      return "Debond run state 11, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 
@@ -120,7 +120,7 @@ namespace Debond
     void
     exchange(Archive &archive, BondMemory &memory)
     {
-      archive &memory.slipped &memory.pressed &memory.rubbed;
+      archive &memory.slipped &memory.pressed &memory.rubbed &memory.loose;
       archive &memory.reached &memory.mode &memory.mixity &memory.taken &memory
         .lag;
     }

@@ -5,6 +5,7 @@
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/cone_qp.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <algorithm>
@@ -71,6 +72,22 @@ namespace
 
 
 
+  /// A positive definite matrix, or that of a beam.
+  Eigen::MatrixXd
+  random_or_beam(Random &random, const unsigned int n, const bool is_beam)
+  {
+    Eigen::MatrixXd D(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        D(i, j) = !is_beam   ? random(-1., 1.) :
+                  i == j     ? 1. :
+                  i == j + 1 ? -2. :
+                               double(i == j + 2);
+    return D.transpose() * D + 1e-3 * Eigen::MatrixXd::Identity(n, n);
+  }
+
+
+
   /// Bounds on some unknowns, kinks at random places on others, from random
   /// active sets; a quarter are beams, on which exchanges wander. The
   /// optimality conditions are computed in extended precision.
@@ -82,19 +99,11 @@ namespace
     unsigned int n_stick = 0, n_below = 0, n_above = 0;
     for (unsigned int k = 0; k < 200; ++k)
       {
-        const unsigned int n = random.integer(2, 40);
-        Eigen::MatrixXd    D(n, n);
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            D(i, j) = k % 4 > 0  ? random(-1., 1.) :
-                      i == j     ? 1. :
-                      i == j + 1 ? -2. :
-                                   double(i == j + 2);
-        const Eigen::MatrixXd M =
-          D.transpose() * D + 1e-3 * Eigen::MatrixXd::Identity(n, n);
-        Eigen::VectorXd r(n), upper(n);
-        Kinks           kinks = {Eigen::VectorXd::Zero(n), upper};
-        ActiveSet       active(n);
+        const unsigned int    n = random.integer(2, 40);
+        const Eigen::MatrixXd M = random_or_beam(random, n, k % 4 == 0);
+        Eigen::VectorXd       r(n), upper(n);
+        Kinks                 kinks = {Eigen::VectorXd::Zero(n), upper};
+        ActiveSet             active(n);
         for (unsigned int i = 0; i < n; ++i)
           {
             r(i)           = random(-1., 1.);
@@ -136,6 +145,82 @@ namespace
     check("optimality conditions to 1e-10 of the forces", worst, 1e-10);
     check("at kinks and on both sides",
           std::min({n_stick, n_below, n_above}) > 100);
+  }
+
+
+
+  /// As before, with pairs of kinks among bounds and single ones, some started
+  /// at their kinks.
+  void
+  test_cones(Random &random)
+  {
+    bool         converged = true;
+    double       worst     = 0.;
+    unsigned int n_stick = 0, n_slide = 0;
+    for (unsigned int k = 0; k < 200; ++k)
+      {
+        const unsigned int    n = 2 * random.integer(1, 20);
+        const Eigen::MatrixXd M = random_or_beam(random, n, k % 4 == 0);
+        Eigen::VectorXd       r(n), upper(n), start(n);
+        Kinks                 kinks = {Eigen::VectorXd::Zero(n), upper, {}};
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            r(i)           = random(-1., 1.);
+            upper(i)       = infinity;
+            kinks.place(i) = random(-0.5, 0.5);
+            kinks.partner.push_back(i);
+          }
+        for (unsigned int i = 0; i < n; i += 2)
+          {
+            const unsigned int kind = random.integer(0, 3);
+            if (kind == 0)
+              upper(i) = random(-0.1, 1.);
+            else
+              kinks.weight(i) = std::pow(10., random(-3., 1.));
+            if (kind > 1)
+              {
+                kinks.weight(i + 1) = kinks.weight(i);
+                std::swap(kinks.partner[i], kinks.partner[i + 1]);
+              }
+          }
+        start = kinks.place;
+        if (k % 2 == 0)
+          start.setZero();
+        ActiveSet           active(n, 0);
+        const Bounds        bounds(upper, kinks);
+        const BoundQPResult result = ConeQP(M, r, bounds).solve(start, active);
+        converged = converged && can_be_verified(result.status);
+        const LongVector exact =
+          r.cast<long double>() -
+          M.cast<long double>() * result.x.cast<long double>();
+        const Eigen::VectorXd force = exact.cast<double>();
+        const double          scale =
+          r.lpNorm<Eigen::Infinity>() + (M * result.x).norm();
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const unsigned int    j = kinks.partner[i];
+            const Eigen::Vector2d v(result.x(i) - kinks.place(i),
+                                    j == i ? 0. : result.x(j) - kinks.place(j));
+            const Eigen::Vector2d f(force(i), j == i ? 0. : force(j));
+            const double          w = kinks.weight(i);
+            double                wrong;
+            if (w == 0.)
+              wrong = result.x(i) > upper(i) ? scale :
+                      result.x(i) < upper(i) ? std::abs(f(0)) :
+                                               -f(0);
+            else if (v.norm() == 0.)
+              wrong = f.norm() - w;
+            else
+              wrong = (f - w * v.normalized()).norm();
+            raise(worst, wrong / scale);
+            n_stick += j != i && v.norm() == 0.;
+            n_slide += j != i && v.norm() > 0.;
+          }
+      }
+    section("bound QP with pairs of kinks on 200 problems");
+    check("converged", converged);
+    check("optimality conditions to 1e-10 of the forces", worst, 1e-10);
+    check("some slide and some stick", std::min(n_stick, n_slide) > 100);
   }
 
 
@@ -256,6 +341,7 @@ main(int argc, char *[])
   Random random;
   test_beam_qp();
   test_kinks(random);
+  test_cones(random);
   test_coarse_start(random);
   test_active_set_guess();
 }

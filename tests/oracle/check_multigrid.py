@@ -30,6 +30,9 @@ def check_scene(linear, contact, cells, *settings):
     check("law", result["law_violation"] <= 1e-6, result["law_violation"])
     close("J of the direct path", result["functional"], direct["functional"], 1e-11)
     check("its contact and bonds", result["bond_states"] == direct["bond_states"])
+    friction = [r.get("friction", {}) for r in (result, direct)]
+    check("its friction", friction[0] == friction[1]
+          and 0 not in friction[0].values(), friction)
 
 
 def check_contrasts():
@@ -64,6 +67,10 @@ def bonds(a, M):
     return [f"Bond stiffness={a}", f"Bond threshold={M}"]
 
 
+def friction(bound):
+    return [f"Contact law/Friction bound={bound}"]
+
+
 scenes.all_of(globals(), *((name, check_scene, *case) for name, *case in (
     ("2D", 16, 18, "80, 8"),
     ("2D, fine", 0, 18, "320, 32"),
@@ -88,6 +95,8 @@ scenes.all_of(globals(), *((name, check_scene, *case) for name, *case in (
      "Traction top=0; if(x < 0.2, 0.1, -0.05); 0", "Lengths=0.4, 0.04, 0.4",
      "Clamped boundaries=left, back"),
     ("gauss 2", 0, 18, "80, 8", "Quadrature=gauss 2"),
+    ("friction", 0, 30, "80, 8", *friction(0.2)),
+    ("friction of a solid", 0, 60, "40, 4, 4", *SOLID, *friction(0.2)),
     ("off the foundation, pressed", 0, 22, "80, 8", "Initial gap=0.001"),
     *((f"plane strain, nu = {nu}", linear, contact, "80, 8", "Hypothesis=plane strain",
        f"Poisson ratio={nu}") for nu, linear, contact in ((0.45, 40, 50), (0.49, 90, 110))))))

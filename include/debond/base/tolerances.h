@@ -159,6 +159,13 @@ namespace Debond
     /// Part of the largest displacement by which a line goes on behind a kink.
     constexpr double past_kink = 4. * epsilon;
 
+    /// Part of the place of a kink below which the way from it has no
+    /// direction.
+    constexpr double at_cone = 4. * epsilon;
+
+    /// That where pairs go to and fro, at most.
+    constexpr double longest_no_way = 1e-9;
+
     /// Displacements and pressures that an active set takes for zero.
     constexpr double active_set = 16. * epsilon;
 

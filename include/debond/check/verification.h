@@ -179,15 +179,8 @@ namespace Debond
     unsigned int
     count(const BondState state) const;
 
-    bool
-    has_friction() const
-    {
-      return std::any_of(nodes.begin(),
-                         nodes.end(),
-                         [](const ContactNodeState &node) {
-                           return node.slides.has_value();
-                         });
-    }
+    /// Whether the scene has it, although nothing may be pressed.
+    bool has_friction = false;
 
     const std::string &
     name(const BondState state) const;

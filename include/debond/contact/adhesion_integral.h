@@ -33,6 +33,10 @@ namespace Debond
     std::vector<double> slipped = {}, pressed = {};
     double              rubbed = 0.;
 
+    /// Where bonds that hold do not rub, for each unknown the damage at the
+    /// beginning of the step.
+    std::vector<double> loose = {};
+
     bool
     empty() const
     {
@@ -156,19 +160,20 @@ namespace Debond
     }
 
     /// A step of a path begins at @p s, to which friction has taken the work of
-    /// the way. A given bound is that of the damage until then.
+    /// the way. A given bound is that of the damage until then. Where friction
+    /// depends on the pressure, what has stuck before sticks.
     void
     slide_to(const VectorView &s);
 
     /// From now on friction is that of these normal @p forces of all nodes,
-    /// positive ones press. Returns by how much its largest forces change,
-    /// relative to the largest of them.
+    /// positive ones press. Returns by how much its largest forces change.
     double
     press(const VectorView &forces);
 
-    /// From now on nothing slides where friction depends on the pressure.
+    /// From now on these unknowns do not slide where friction depends on the
+    /// pressure, and others have what does not depend on it.
     void
-    stick();
+    stick(const std::vector<bool> &sticks);
 
     const Kinks &
     kinks() const override
@@ -283,14 +288,18 @@ namespace Debond
 
     /// Phi(s), an energy.
     double
-    value(const VectorView &s) const;
+    value(const VectorView &s) const
+    {
+      return energy_of_bonds(s) + friction_kinks.value(s);
+    }
 
     /// The energy that bonds which do not return, and friction, have taken for
     /// good.
     double
     dissipated_energy() const;
 
-    /// Phi(0), which is zero if nothing is prescribed and bonds return.
+    /// Phi(0) without friction, which is zero if nothing is prescribed and
+    /// bonds return.
     double
     value_at_zero() const
     {
@@ -300,7 +309,7 @@ namespace Debond
     double
     change(const VectorView &s) const override
     {
-      return value(s) - phi_at_zero;
+      return energy_of_bonds(s) - phi_at_zero + friction_kinks.value(s);
     }
 
     /// One element of the Clarke subdifferential of Phi at s (at a kink the
@@ -352,6 +361,10 @@ namespace Debond
                     const std::vector<double> &delta) const;
 
   private:
+    /// Phi(s) but for the friction of this step.
+    double
+    energy_of_bonds(const VectorView &s) const;
+
     /// memory() with the lists of modes.
     BondMemory
     memory_with_modes() const;
@@ -372,7 +385,8 @@ namespace Debond
                           const double                         across,
                           std::vector<Eigen::Triplet<double>> &entries);
 
-    /// The weights of the kinks in this step, which bonds that hold may lessen.
+    /// The weights of the kinks in this step, which bonds that held when it
+    /// began may lessen.
     void
     set_weights(Eigen::VectorXd weights);
 
@@ -390,7 +404,7 @@ namespace Debond
     Friction            rubs;
     Kinks               friction_kinks;   ///< empty without friction
     std::vector<double> reached_of_nodes; ///< empty as broken.reached is
-    double              phi_at_zero = 0.;
+    double              phi_at_zero = 0.; ///< value_at_zero()
   };
 } // namespace Debond
 

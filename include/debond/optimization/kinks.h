@@ -2,10 +2,13 @@
 #ifndef debond_optimization_kinks_h
 #define debond_optimization_kinks_h
 
+#include <debond/base/tolerances.h>
 #include <debond/base/views.h>
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace Debond
@@ -46,11 +49,12 @@ namespace Debond
       return result;
     }
 
-    /// The components of a pair, from its first one.
+    /// The component and its partner, if it has one.
     std::vector<Eigen::Index>
-    pair(const Eigen::Index i) const
+    group(const Eigen::Index i) const
     {
-      return {i, partner[i]};
+      return is_paired(i) ? std::vector<Eigen::Index>{i, partner[i]} :
+                            std::vector<Eigen::Index>{i};
     }
 
     /// The length of x - place for the component, or for its pair.
@@ -89,6 +93,23 @@ namespace Debond
         if (const double length = has(i) ? way(i, x) : 0.; length > 0.)
           result(i) = weight(i) * ((x(i) - place(i)) / length);
       return result;
+    }
+
+    /// What rounding of x and of the place may change in a component of the
+    /// gradient: the direction of a short way is hardly known.
+    double
+    rounding(const Eigen::Index i, const VectorView &x) const
+    {
+      if (!is_paired(i))
+        return 0.;
+      double size = 0.;
+      for (const Eigen::Index j : group(i))
+        size = std::max({size, std::abs(x(j)), std::abs(place(j))});
+      const double length = way(i, x);
+      return weight(i) *
+             (length == 0. ?
+                0. :
+                std::min(2., 4. * Tolerance::epsilon * size / length));
     }
 
     /// The second derivative, without what is at its kink.

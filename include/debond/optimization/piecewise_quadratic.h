@@ -24,7 +24,8 @@ namespace Debond
   public:
     virtual ~PiecewiseQuadratic() = default;
 
-    /// Phi(s) - Phi(0).
+    /// Phi(s) less the value at 0 of all but the kinks, whose weights may be
+    /// so large that nothing else would be left of the difference.
     virtual double
     change(const VectorView &s) const = 0;
 

@@ -110,7 +110,7 @@ namespace Debond
         Eigen::VectorXd result = Eigen::VectorXd::Zero(n);
         for (const Eigen::Index i : kinks.pairs())
           {
-            const auto      pair = kinks.pair(i);
+            const auto      pair = kinks.group(i);
             Eigen::Vector2d v    = node.x(pair) - kinks.place(pair);
             // At its kink a pair balances the rest.
             const bool slides = !v.isZero(0.);

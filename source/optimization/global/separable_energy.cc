@@ -64,8 +64,7 @@ namespace Debond
     double                sum = 0.;
     for (unsigned int i = 0; i < l.size(); ++i)
       sum += piece(i, l).value(l(i));
-    return sum + friction.value(s) -
-           friction.value(Eigen::VectorXd::Zero(s.size()));
+    return sum + friction.value(s);
   }
 
 

@@ -110,7 +110,8 @@ namespace Debond
         const bool is_at = bounds.is_at(i, s);
         violation =
           std::max(violation,
-                   is_at ? -bounds.hold(i, force) : std::abs(left(i)));
+                   is_at ? -bounds.hold(i, force) :
+                           std::abs(left(i)) - bounds.kinks.rounding(i, s));
         largest_force = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
         state.n_active += is_at && !bounds.kinks.has(i);

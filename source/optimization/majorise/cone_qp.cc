@@ -19,59 +19,67 @@ namespace Debond
 
     constexpr unsigned int maximum_lengths = 60;
 
-    /// What may be rounding, over the rounding of single products.
-    constexpr double near_noise = 1e3;
+    /// Without that the violation halves.
+    constexpr unsigned int most_idle_steps = 3;
 
-
-
-    /// The v for which 1/2 v'A v - f'v + w |v| is least, w > 0.
-    Eigen::Vector2d
-    least_on_pair(const Eigen::Matrix2d &A,
-                  const Eigen::Vector2d &f,
-                  const double           w)
-    {
-      const double beyond = f.norm() - w;
-      if (!(beyond > 0.))
-        return Eigen::Vector2d::Zero();
-      // (A + w / rho) v = f with rho = |v|: in the axes of A a single equation,
-      // |c / (lambda rho + w)| = 1. Its reciprocal is nearly linear in rho, and
-      // linear if A is isotropic.
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
-      const Eigen::Array2d lambda = eigen.eigenvalues();
-      const Eigen::Array2d c      = eigen.eigenvectors().transpose() * f;
-      const double         least  = beyond / lambda(1);
-      const double         most   = beyond / lambda(0);
-      double               rho    = least;
-      for (unsigned int k = 0; k < maximum_lengths; ++k)
-        {
-          // Newton's step for h^(-1/2) = 1.
-          const Eigen::Array2d d     = lambda * rho + w;
-          const double         h     = (c / d).square().sum();
-          const double         slope = (lambda * (c / d).square() / d).sum();
-          const double         next =
-            std::clamp(rho + h * (std::sqrt(h) - 1.) / slope, least, most);
-          if (std::abs(next - rho) <= 4. * Tolerance::epsilon * next)
-            break;
-          rho = next;
-        }
-      return eigen.eigenvectors() * (rho * c / (lambda * rho + w)).matrix();
-    }
+    /// What may be rounding, and what is next to the minimum, over the rounding
+    /// of single products.
+    constexpr double near_noise = 1e3, near_minimum = 1e9;
   } // namespace
 
 
 
+  Eigen::Vector2d
+  least_on_pair(const Eigen::Matrix2d &A,
+                const Eigen::Vector2d &f,
+                const double           w)
+  {
+    const double beyond = f.norm() - w;
+    if (!(beyond > 0.))
+      return Eigen::Vector2d::Zero();
+    // (A + w / rho) v = f with rho = |v|: in the axes of A a single equation,
+    // |c / (lambda rho + w)| = 1. Its reciprocal is nearly linear in rho, and
+    // linear if A is isotropic.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
+    const Eigen::Array2d lambda = eigen.eigenvalues();
+    const Eigen::Array2d c      = eigen.eigenvectors().transpose() * f;
+    const double         least  = beyond / lambda(1);
+    const double         most   = beyond / lambda(0);
+    double               rho    = least;
+    for (unsigned int k = 0; k < maximum_lengths; ++k)
+      {
+        // Newton's step for h^(-1/2) = 1.
+        const Eigen::Array2d d     = lambda * rho + w;
+        const double         h     = (c / d).square().sum();
+        const double         slope = (lambda * (c / d).square() / d).sum();
+        const double         next =
+          std::clamp(rho + h * (std::sqrt(h) - 1.) / slope, least, most);
+        if (std::abs(next - rho) <= 4. * Tolerance::epsilon * next)
+          break;
+        rho = next;
+      }
+    return eigen.eigenvectors() * (rho * c / (lambda * rho + w)).matrix();
+  }
+
+
+
   void
-  ConeQP::relax_pairs(Eigen::VectorXd &x, Eigen::VectorXd &force) const
+  ConeQP::relax_pairs(const double     short_way,
+                      Eigen::VectorXd &x,
+                      Eigen::VectorXd &force) const
   {
     for (const Eigen::Index i : bounds.kinks.pairs())
       {
-        const std::vector<Eigen::Index> pair  = bounds.kinks.pair(i);
+        const std::vector<Eigen::Index> pair  = bounds.kinks.group(i);
         const Eigen::Vector2d           place = bounds.kinks.place(pair);
         const Eigen::Matrix2d           A     = M(pair, pair);
         // The force with the pair at its kink.
         const Eigen::Vector2d v = x(pair) - place;
-        const Eigen::Vector2d next =
+        Eigen::Vector2d       next =
           least_on_pair(A, force(pair) + A * v, bounds.kinks.weight(i));
+        // So close to the kink rounding of x makes the direction.
+        if (next.norm() <= short_way * place.norm())
+          next.setZero();
         if (next == v)
           continue;
         x(pair) = place + next;
@@ -118,6 +126,18 @@ namespace Debond
 
 
 
+  Eigen::VectorXd
+  ConeQP::sizes(const Eigen::VectorXd &x) const
+  {
+    Eigen::VectorXd result = x.cwiseAbs();
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (bounds.kinks.is_paired(i))
+        result(i) = std::max(result(i), std::abs(bounds.place(i)));
+    return result;
+  }
+
+
+
   double
   ConeQP::violation(const Eigen::VectorXd &x,
                     const Eigen::VectorXd &force) const
@@ -126,8 +146,9 @@ namespace Debond
     double                worst = 0.;
     for (Eigen::Index i = 0; i < x.size(); ++i)
       worst = std::max(worst,
-                       is_active(bounds.state(i, x)) ? -bounds.hold(i, force) :
-                                                       std::abs(left(i)));
+                       is_active(bounds.state(i, x)) ?
+                         -bounds.hold(i, force) :
+                         std::abs(left(i)) - bounds.kinks.rounding(i, x));
     return worst;
   }
 
@@ -145,7 +166,7 @@ namespace Debond
     Eigen::MatrixXd                   sum   = M;
     sum += H;
     for (const Eigen::Index i : bounds.kinks.pairs())
-      for (const Eigen::Index j : bounds.kinks.pair(i))
+      for (const Eigen::Index j : bounds.kinks.group(i))
         {
           load(j) -= slope(j);
           active[j] = bounds.is_at(j, x);
@@ -167,30 +188,47 @@ namespace Debond
       return solve_bound_qp(M, r, bounds, active, tolerance, factor);
 
     BoundQPResult   result;
-    double          before = infinity;
-    Eigen::VectorXd x      = start;
+    Eigen::VectorXd x = start;
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (!bounds.kinks.has(i))
         x(i) = std::min(x(i), bounds.place(i));
+    Eigen::VectorXd best  = x;
+    double          least = infinity, short_way = Tolerance::at_cone;
+    unsigned int    idle = 0;
     for (unsigned int k = 0; k < maximum_cone_steps; ++k)
       {
         Eigen::VectorXd force = r - M * x;
         const double    worst = violation(x, force);
         const double    noise =
           Tolerance::row_of_product *
-          (r.cwiseAbs() + M.cwiseAbs() * x.cwiseAbs()).maxCoeff();
-        const bool is_enough =
-          worst <= std::max(noise, tolerance * r.lpNorm<Eigen::Infinity>());
-        // What is near rounding and becomes no less is rounding.
-        if (is_enough || (worst <= near_noise * noise && worst > 0.5 * before))
+          (r.cwiseAbs() + M.cwiseAbs() * sizes(x)).maxCoeff();
+        // Far from the minimum the violation may rise before it falls.
+        idle =
+          worst <= 0.5 * least || least > near_minimum * noise ? 0 : idle + 1;
+        if (worst < least)
           {
-            result.status =
-              is_enough ? SolverStatus::success : SolverStatus::stagnated;
+            least = worst;
+            best  = x;
+          }
+        if (least <= std::max(noise, tolerance * r.lpNorm<Eigen::Infinity>()))
+          {
+            result.status = SolverStatus::success;
             break;
           }
-        before = worst;
+        // What is near rounding and becomes no less is rounding. Farther from
+        // it pairs that bear what they can and hardly slide go to and fro, as
+        // when a load is again what it has been: the shortest ways are none.
+        result.status = SolverStatus::stagnated;
+        if (idle >= most_idle_steps)
+          {
+            if (least <= near_noise * noise ||
+                short_way == Tolerance::longest_no_way)
+              break;
+            short_way = std::min(100. * short_way, Tolerance::longest_no_way);
+            idle      = 0;
+          }
 
-        relax_pairs(x, force);
+        relax_pairs(short_way, x, force);
         const BoundQPResult newton = newton_step(x, active, factor);
         result.steps += newton.steps;
         result.operations += newton.operations;
@@ -204,7 +242,7 @@ namespace Debond
         Eigen::VectorXd target = newton.x;
         for (const Eigen::Index i : pairs)
           {
-            const auto            pair  = bounds.kinks.pair(i);
+            const auto            pair  = bounds.kinks.group(i);
             const Eigen::Vector2d place = bounds.kinks.place(pair);
             if ((target(pair) - place).dot(x(pair) - place) <= 0.)
               target(pair) = place;
@@ -213,8 +251,8 @@ namespace Debond
           step(newton.x, force, x);
       }
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      active[i] = bounds.state(i, x);
-    result.x = x;
+      active[i] = bounds.state(i, best);
+    result.x = best;
     return result;
   }
 } // namespace Debond

@@ -49,10 +49,8 @@ namespace Debond
             // Of pairs both at once.
             if (bounds.kinks.is_paired(i) && bounds.kinks.partner[i] < i)
               continue;
-            const bool                      has_kink = bounds.kinks.has(i);
-            const std::vector<Eigen::Index> all =
-              bounds.kinks.is_paired(i) ? bounds.kinks.pair(i) :
-                                          std::vector<Eigen::Index>{i};
+            const bool            has_kink = bounds.kinks.has(i);
+            const auto            all      = bounds.kinks.group(i);
             const Eigen::MatrixXd columns =
               (has_kink ? motions : towards)(Eigen::all, all);
             const double square = columns.squaredNorm();

@@ -63,8 +63,8 @@ namespace Debond
 
     /// Returns whether the scene needs S and g: for the metric of the energy
     /// bundle, for Newton steps and second-order conditions if bonds soften,
-    /// for full searches, proofs and arcs, for friction, and for bodies that
-    /// only bonds hold, whose resultants are set in g.
+    /// for full searches, proofs and arcs, for pressures of friction, and for
+    /// bodies that only bonds hold, whose resultants are set in g.
     template <int dim>
     bool
     needs_condensed(const Scene<dim>       &scene,
@@ -74,7 +74,7 @@ namespace Debond
       const LoadPathParameters &path = scene.parameters().load_path;
       return method == SolverMethod::energy_bundle || solver.prove ||
              scene.law().softens() || solver.search == BondSearchChoice::full ||
-             path.arc || scene.parameters().friction.is_somewhere() ||
+             path.arc || scene.adhesion().friction().depends_on_pressure() ||
              (!path.factors.empty() &&
               path.global_branch == GlobalBranch::prove) ||
              !scene.problem().unknowns().is_held_by_supports();

@@ -6,6 +6,7 @@
 #include <debond/solve/minimum/refinement.h>
 #include <debond/solve/minimum/solve.h>
 #include <debond/solve/path/branch_of_path.h>
+#include <debond/solve/path/coulomb.h>
 #include <debond/solve/path/largest_force.h>
 #include <debond/solve/path/load_path.h>
 #include <debond/solve/path/load_path_arc.h>
@@ -19,9 +20,6 @@ namespace Debond
   {
     /// How often a step is done with new modes of its bonds.
     constexpr unsigned int most_modes = 10;
-
-    /// How often a step is done with new pressures of friction.
-    constexpr unsigned int most_pressures = 1000;
 
 
 
@@ -425,10 +423,10 @@ namespace Debond
       }
 
       /// The minimum from the state before. Where friction depends on the
-      /// pressure it begins with all that sticks in the first step and with the
-      /// pressures of the step before in others, and once more with all that
-      /// sticks if these do not hold the body. Other starts may settle on other
-      /// states; a note says so.
+      /// pressure it begins with all that sticks in the first step. In others
+      /// what has stuck sticks and what has slid has its pressures of then, or
+      /// all sticks if these do not hold the body. Other starts may settle on
+      /// other states; a note says so.
       Solution
       minimise_with_friction(const LoadFactors      factors,
                              const PathEnd<dim>    &begun,
@@ -436,27 +434,53 @@ namespace Debond
       {
         if (!bonds.friction().depends_on_pressure())
           return minimise(factors, begun, bonds);
-        const bool is_first = begun.step.step == 0;
+        const std::vector<bool> all(bonds.n_unknowns(), true);
+        const bool              is_first = begun.step.step == 0;
         if (is_first)
-          bonds.stick();
-        Solution result = settle_friction(factors, begun, bonds);
+          bonds.stick(all);
+        const bool         breaks = scene.law().pieces().size() > 1;
+        const Condensation condensed_here =
+          CondensedScene<dim>{scene, *solver->condensed()}.at(factors);
+        const auto settle = [&](AdhesionIntegral<dim> &from) {
+          bool begins = true;
+          return settle_friction<dim>(
+            {[&]() {
+               // Bonds that break with other pressures would stay broken, and
+               // what has slid would not be where it sticks.
+               if (breaks || std::exchange(begins, false))
+                 solver->start_from(begun.u);
+               return minimise(factors, begun, from);
+             },
+             [&]() {
+               // What is closed is pressed by what is missing to equilibrium.
+               const Eigen::VectorXd s = solver->point();
+               const Eigen::VectorXd forces =
+                 condensed_here.load() - condensed_here.schur_complement() * s;
+               return Eigen::VectorXd(
+                 (s.array() == 0.).select(forces, 0.).head(bonds.n_nodes()));
+             }},
+            from);
+        };
+        Solution result = settle(bonds);
         if (result.status == SolverStatus::comes_off && !is_first)
           {
-            bonds.stick();
-            result = settle_friction(factors, begun, bonds);
+            bonds.stick(all);
+            result = settle(bonds);
           }
         if (!can_be_verified(result.status) || knows_other_friction)
           return result;
-        // The state stays what it is, and the solver returns to it.
+        // The second start is the opposite of what was found: what sticks is
+        // not pressed, and what slides sticks. The state stays what it is, and
+        // the solver returns to it.
         const DofVector       u     = solver->displacement();
         const Eigen::VectorXd s     = solver->point();
         AdhesionIntegral<dim> other = bonds;
-        if (is_first)
-          other.press(Eigen::VectorXd::Zero(bonds.n_nodes()));
-        else
-          other.stick();
+        std::vector<bool>     slides;
+        for (Eigen::Index i = 0; i < s.size(); ++i)
+          slides.push_back(bonds.kinks().way(i, s) > 0.);
+        other.stick(slides);
         knows_other_friction =
-          can_be_verified(settle_friction(factors, begun, other).status) &&
+          can_be_verified(settle(other).status) &&
           (solver->point() - s).norm() > Tolerance::other_friction * s.norm();
         solver->start_from(u);
         if (knows_other_friction)
@@ -464,52 +488,10 @@ namespace Debond
             words("Coulomb's friction has several states at ",
                   parameters.name(factors),
                   ": from other pressures another one is found. The path "
-                  "follows that which ",
-                  is_first ? "all that sticks leads to" :
-                             "the pressures of the step before lead to"));
-        return result;
-      }
-
-      /// The discrete problem of Coulomb is a fixed point of problems with a
-      /// given bound (Necas, Jarusek, Haslinger, Boll. Un. Mat. Ital. 17,
-      /// 1980), which are contracted if coefficients are small: each has the
-      /// pressures that the last one has led to.
-      Solution
-      settle_friction(const LoadFactors      factors,
-                      const PathEnd<dim>    &begun,
-                      AdhesionIntegral<dim> &bonds)
-      {
-        const Condensation condensed_here =
-          CondensedScene<dim>{scene, *solver->condensed()}.at(factors);
-        Solution result;
-        double   change = infinity;
-        for (unsigned int k = 0; k < most_pressures; ++k)
-          {
-            // Each begins where the step does: bonds that break with other
-            // pressures would stay broken.
-            solver->start_from(begun.u);
-            result.add(minimise(factors, begun, bonds));
-            if (!can_be_verified(result.status))
-              return result;
-            // What is closed is pressed by what is missing to equilibrium.
-            const Eigen::VectorXd s = solver->point();
-            const Eigen::VectorXd forces =
-              condensed_here.load() - condensed_here.schur_complement() * s;
-            change = bonds.press(
-              (s.array() == 0.).select(forces, 0.).head(bonds.n_nodes()));
-            if (change <= Tolerance::pressure_of_friction)
-              return result;
-          }
-        result.status = SolverStatus::iteration_limit;
-        result.message =
-          words("friction: the pressures change by ",
-                change,
-                " of the largest one after ",
-                most_pressures,
-                " repetitions, required is ",
-                Tolerance::pressure_of_friction,
-                ". Try smaller steps, or a smaller Friction coefficient: with "
-                "a large one there may be no state, or many.");
+                  "follows that to which ",
+                  is_first ? "all that sticks leads" :
+                             "what sticks, and pressures of the step before "
+                             "where it slides, lead"));
         return result;
       }
 

@@ -430,17 +430,19 @@ namespace Debond
       };
       for (const auto &face : boundary.faces)
         if (const auto found = fields.find(face.id); found != fields.end())
-          for (unsigned int k = 0; k < dim; ++k)
+          for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
             try
               {
-                const double value =
-                  weight(face, k) *
-                  nonnegative_value(*found->second.second, face.vertices[k]);
+                const auto add_at = [&](const auto &at) {
+                  add(at.tangents,
+                      weight(face, k) *
+                        nonnegative_value(*found->second.second, at.position));
+                };
                 // Where nothing is unknown along the boundary nothing slides.
                 if (!face.is_held(k))
-                  add(boundary.nodes[face.node(k)].tangents, value);
+                  add_at(boundary.nodes[face.node(k)]);
                 else if (!boundary.held_vertices.empty())
-                  add(boundary.held_vertices[face.held_at(k)].tangents, value);
+                  add_at(boundary.held_vertices[face.held_at(k)]);
               }
             catch (const std::invalid_argument &error)
               {
@@ -462,8 +464,11 @@ namespace Debond
       return {};
     const auto entries = entries_of_friction(given);
     // Each vertex has the integral of its basis function times the bound there:
-    // the trapezoidal rule, with which one unknown slides at a time. Its
-    // coefficient is the mean of those of its faces.
+    // the trapezoidal rule, with which one unknown slides at a time. So has
+    // each coefficient of quadratic displacements, whose basis functions are
+    // not negative, so that the sum is exact where all slides one way, and no
+    // less than the integral elsewhere. Its coefficient of friction is the mean
+    // of those of its faces.
     Friction result;
     result.bound = on_unknowns(entries[0].first,
                                *entries[0].second,
@@ -489,7 +494,7 @@ namespace Debond
     std::set<unsigned int> moved;
     for (const auto &face : boundary.faces)
       if (conditions.with_friction.count(face.id) > 0)
-        for (unsigned int k = 0; k < dim; ++k)
+        for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           if (!face.is_held(k))
             for (const auto &tangent : boundary.nodes[face.node(k)].tangents)
               if (tangent.is_held &&

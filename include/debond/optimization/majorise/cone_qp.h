@@ -6,6 +6,14 @@
 
 namespace Debond
 {
+  /// The v for which 1/2 v'A v - f'v + w |v| is least, w > 0.
+  Eigen::Vector2d
+  least_on_pair(const Eigen::Matrix2d &A,
+                const Eigen::Vector2d &f,
+                const double           w);
+
+
+
   /**
    * min 1/2 x'M x - r'x + kinks(x) subject to x <= b as solve_bound_qp(), where
    * kinks may have pairs: friction of a node that can slide in a plane, w |v|.
@@ -41,10 +49,13 @@ namespace Debond
           BorderedCholesky      *factor    = nullptr) const;
 
   private:
-    /// Each pair to where the functional is least, one after the other. @p
-    /// force: r - M x, which follows x.
+    /// Each pair to where the functional is least, one after the other, or to
+    /// its kink if the way is no longer than this part of the place. @p force:
+    /// r - M x, which follows x.
     void
-    relax_pairs(Eigen::VectorXd &x, Eigen::VectorXd &force) const;
+    relax_pairs(const double     short_way,
+                Eigen::VectorXd &x,
+                Eigen::VectorXd &force) const;
 
     /// The minimum of the second-order expansion about @p x.
     BoundQPResult
@@ -58,6 +69,10 @@ namespace Debond
     step(const Eigen::VectorXd &target,
          const Eigen::VectorXd &force,
          Eigen::VectorXd       &x) const;
+
+    /// What x is rounded with: of pairs the way from their kinks counts, too.
+    Eigen::VectorXd
+    sizes(const Eigen::VectorXd &x) const;
 
     /// The largest violation of the optimality conditions.
     double

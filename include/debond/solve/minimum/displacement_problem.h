@@ -2,6 +2,7 @@
 #ifndef debond_solve_minimum_displacement_problem_h
 #define debond_solve_minimum_displacement_problem_h
 
+#include <debond/optimization/majorise/cone_qp.h>
 #include <debond/optimization/majorise/majorant.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -49,7 +50,12 @@ namespace Debond
   private:
     using Vector = DistributedVector;
 
-    /// Minimises the majorant in one normal displacement after the other.
+    /// The @p force, without that of kinks, that nothing holds.
+    Eigen::VectorXd
+    beyond_hold(const Eigen::VectorXd &s, const Eigen::VectorXd &force) const;
+
+    /// Minimises the majorant in one displacement of the contact boundary after
+    /// the other.
     void
     smooth_contact(Vector &force);
 
@@ -66,6 +72,7 @@ namespace Debond
     const Vector                      diagonal; ///< of A
     const PiecewiseQuadratic         &phi;
     const ContactUnknowns             contact;
+    const Bounds                      bounds;          ///< with Phi's kinks
     const Eigen::SparseMatrix<double> contact_block;   ///< of A
     const std::vector<unsigned int>   rows_of_contact; ///< that couple to it
     TruncatedMultigrid               &cycle;
