@@ -142,6 +142,26 @@ def cattaneo(run):
                8. * path["stick_part"][k])
 
 
+@problem("Cattaneo, Mindlin: balls that slide", "Mindlin, J. Appl. Mech. 16 (1949)",
+         0.02, 0.01, 0.08, 0.12)
+def balls(run):
+    results = run("published/balls")
+    path, profile, R, mu, stiffness = results.load_path, results.profile, 50., 0.4013, 200. / 0.58
+    # Half of the balls, on a square of the area 128.
+    force = 2. * abs(path["reaction_top_y"])
+    radius = numpy.cbrt(3. * force * R / (4. * stiffness))
+    stick = radius * numpy.cbrt(1. - 2. * path["reaction_top_x"] / (mu * force))
+    yield "radius of contact", radius[-1], numpy.sqrt(256. * path["contact_part"][-1] / math.pi)
+    near = numpy.hypot(profile["x"], profile["z"]) < 0.3
+    load = profile["normal_force"][near]
+    part = (0.3 / radius[-1])**2
+    yield ("mean pressure within 0.3", force[-1] / (math.pi * 0.3**2) * (1. - (1. - part)**1.5),
+           load.sum() / (load / profile["normal_force_density"][near]).sum())
+    for k in (1, 2):
+        yield (f"radius that sticks, shift {0.0081 * path['displacement_factor'][k]:.3g}", stick[k],
+               numpy.sqrt(256. * path["stick_part"][k] / math.pi))
+
+
 @problem("square on a rough plane", "code_aster V6.04.128, SSNV128", 0.05)
 def rough_square(run):
     profile = run("published/rough-square").profile
