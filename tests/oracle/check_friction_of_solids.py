@@ -198,7 +198,7 @@ def scene_of(random, bonded, coefficient=None, cells=None):
 
 def check_single_loads():
     random = Random(1)
-    for case in range(20):
+    for case in range(14):
         entries, block, moved, law, (E, size) = scene_of(random, case % 2)
         scenes.section(f"block {case}")
         result = solve(*entries, "Search=none")
@@ -237,7 +237,7 @@ def check_paths():
 def check_proofs():
     """The least J over all choices of which of six bonds hold, by search and by proof."""
     random, n_global = Random(3), 0
-    for case in range(10):
+    for case in range(6):
         entries, block, moved, (phi, k, M), (E, size) = scene_of(random, True, cells=[1, 1, 2])
         scenes.section(f"proof {case}")
         S, R, T = block.condensed()
@@ -257,7 +257,7 @@ def check_proofs():
             n_global += word == "global"
             if word == "global":
                 check("bound", result["proof"]["lower_bound"] <= J + 1e-9 * E * size**2)
-    check("proofs", n_global > 10, n_global)
+    check("proofs", n_global > 6, n_global)
 
 
 def check_invariances():

@@ -438,6 +438,9 @@ namespace Debond
                       weight(face, k) *
                         nonnegative_value(*found->second.second, at.position));
                 };
+                // It is wrong to be negative where nothing is unknown, too.
+                if (k < dim)
+                  nonnegative_value(*found->second.second, face.vertices[k]);
                 // Where nothing is unknown along the boundary nothing slides.
                 if (!face.is_held(k))
                   add_at(boundary.nodes[face.node(k)]);
