@@ -234,6 +234,34 @@ def check_paths():
                       max(*map(abs, force), 1e-5 * E * size))
 
 
+def check_large_coefficients():
+    """With these the pressures of one problem after the other need not settle by themselves. The
+    state is one of Coulomb's by forces from own elements."""
+    random = Random(5)
+    for case in range(16):
+        mu = random.uniform(1., 4.)
+        entries, block, moved, _, (E, size) = scene_of(random, False, mu)
+        scenes.section(f"coefficient {mu:.3g}")
+        result = solve(*entries, *PATH, "Displacement factors=1")
+        check("exit code", result["exit_code"] == 0, result["errors"])
+        S, R, _ = block.condensed()
+        at = {tuple(block.points[v][[0, 2]].round(9)): i for i, v in enumerate(block.low)}
+        x = np.zeros((len(at), 3))
+        for row in result["profile"]:
+            x[at[round(row["x"], 9), round(row["z"], 9)]] = [row[name] for name in (
+                "u_nu", "slip_x", "slip_z")]
+        forces = (-R @ moved - S @ x.ravel()).reshape(-1, 3)
+        scale = max(abs(R @ moved).max(), 1e-300)
+        for (u, *t), (p, *f) in zip(x, forces):
+            length = math.hypot(*t)
+            close("pressure", p, max(p, 0.) if u == 0. else 0., 1e-8, scale)
+            if length > 1e-9 * abs(x).max():
+                for component, way in zip(f, t):
+                    close("slides", component, mu * max(p, 0.) * way / length, 1e-7, scale)
+            else:
+                check("sticks", math.hypot(*f) <= mu * max(p, 0.) + 1e-7 * scale, (f, p))
+
+
 def check_proofs():
     """The least J over all choices of which of six bonds hold, by search and by proof."""
     random, n_global = Random(3), 0

@@ -14,6 +14,8 @@ namespace Debond
     /// accelerated, as what sticks and slides is nearly known.
     constexpr unsigned int most_pressures = 1000, plain_repetitions = 5;
 
+    constexpr unsigned int repetitions_of_round = 100;
+
     constexpr std::size_t remembered_repetitions = 6;
 
 
@@ -73,12 +75,20 @@ namespace Debond
         largest = std::max(largest, bonds.kinks().weight.maxCoeff());
         if (change <= Tolerance::pressure_of_friction * largest)
           return result;
-        Eigen::VectorXd next = image;
-        if (k >= plain_repetitions)
+        // Where what sticks and slides changes acceleration may go round in a
+        // circle. Then shorter and shorter steps, and acceleration again from
+        // where they lead.
+        const unsigned int round = k / repetitions_of_round;
+        Eigen::VectorXd    next  = image;
+        if (k >= plain_repetitions && round % 2 == 0)
+          next = acceleration.next(pressures, image).cwiseMax(0.);
+        else if (k >= plain_repetitions)
           {
-            next = acceleration.next(pressures, image).cwiseMax(0.);
-            bonds.press(next);
+            const double part = std::ldexp(1., -1 - int(round) / 2);
+            next              = pressures + part * (image - pressures);
+            acceleration      = {};
           }
+        bonds.press(next);
         pressures = next;
       }
     result.status = SolverStatus::iteration_limit;
