@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/instantiate.h>
+#include <debond/base/text.h>
 #include <debond/solve/path/coulomb.h>
 
 #include <Eigen/QR>
 
+#include <cmath>
 #include <deque>
 
 namespace Debond

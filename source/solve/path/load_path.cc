@@ -13,6 +13,7 @@
 #include <debond/solve/path/path_table.h>
 
 #include <numeric>
+#include <utility>
 
 namespace Debond
 {
