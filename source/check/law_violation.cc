@@ -177,15 +177,17 @@ namespace Debond
     Eigen::VectorXd left  = Eigen::VectorXd::Zero(n);
     for (const Eigen::Index i : kinks.pairs())
       if (kinks.way(i, s) == 0.)
-        for (const Eigen::Index j : kinks.group(i))
-          left(j) = distance(forces(j),
-                             {at_s[j].lower + kinks.weight(j),
-                              at_s[j].upper - kinks.weight(j)});
-    for (const Eigen::Index i : kinks.pairs())
-      for (const Eigen::Index j : kinks.group(i))
-        upper[j] =
-          std::max(upper[j],
-                   (kinks.size(i, left) - kinks.weight(i)) / scales[j].force);
+        {
+          const auto pair = kinks.group(i);
+          for (const Eigen::Index j : pair)
+            left(j) = distance(forces(j),
+                               {at_s[j].lower + kinks.weight(j),
+                                at_s[j].upper - kinks.weight(j)});
+          for (const Eigen::Index j : pair)
+            upper[j] = std::max(upper[j],
+                                (kinks.size(i, left) - kinks.weight(i)) /
+                                  scales[j].force);
+        }
     return upper;
   }
 

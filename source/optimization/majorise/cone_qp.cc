@@ -12,14 +12,14 @@ namespace Debond
 {
   namespace
   {
-    /// Far more than scenes need, which take 5 to 15.
+    /// Of random problems with up to 60 unknowns none of 2000 has needed half.
     constexpr unsigned int maximum_cone_steps = 200;
 
     constexpr unsigned int maximum_halvings_of_way = 30;
 
     constexpr unsigned int maximum_lengths = 60;
 
-    /// Without that the violation halves.
+    /// In which the violation does not halve.
     constexpr unsigned int most_idle_steps = 3;
 
     /// What may be rounding, and what is next to the minimum, over the rounding
