@@ -260,7 +260,8 @@ namespace Debond
                "" :
                "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6") +
             (body.inner_groups.count(name) > 0 ?
-               "; the group of this name lies inside the body or away from it; bodies that come off each other there are its regions on both sides, with Mesh/Cuts" :
+               "; the group of this name lies inside the body or away from it; what is to come off there is cut along it, by Mesh/Cuts = " +
+                 name :
              body.regions().count(name) > 0 ?
                "; the region of this name is a piece of the body, where Parts has pieces of a boundary, such as bottom: x < 1" :
                ""));

@@ -106,7 +106,7 @@ namespace Debond
       "Mesh/Cuts",
       body.cuts,
       Pattern("a text"),
-      "Surfaces along which the body is cut into several: 'y = 2' is a line of the mesh (before the Rotation), 'y = 2 && x < 60' a part of it, and 'core | ring' is where these regions of a File meet; more of them after commas. Their names are cut_1, cut_2, ..., those of their sides cut_1_low, cut_1_high, ...; as a Contact boundary cut_1 glues the bodies to each other",
+      "Surfaces along which the body is cut into several: 'y = 2' is a line of the mesh (before the Rotation), 'y = 2 && x < 60' a part of it, and 'core | ring' is where these regions of a File meet, 'fault' a group of curves (in 3D of surfaces) inside it; more of them after commas. Their names are cut_1, cut_2, ..., those of their sides cut_1_low, cut_1_high, ..., at a group also fault, fault_low, fault_high; as a Contact boundary cut_1 glues the bodies to each other",
       "length");
     table.bind(
       "Mesh/File",
@@ -184,10 +184,20 @@ namespace Debond
              const double       degrees,
              const Constants   &constants)
     {
-      // A cut is a coordinate and a number, perhaps with a condition behind &&,
-      // or two regions. An '=' tells which of them it is.
+      // A cut is a group of faces, or a coordinate and a number, perhaps with a
+      // condition behind &&, or two regions. An '=' tells which of the last two
+      // it is. A group may lie on the outside by what its file has, if that is
+      // open there.
       Cut<dim> cut;
       cut.text                     = text;
+      cut.rotation                 = rotation_matrix<dim>(degrees);
+      std::set<std::string> groups = body.boundaries();
+      groups.insert(body.inner_groups.begin(), body.inner_groups.end());
+      if (groups.count(text) > 0)
+        {
+          cut.group = text;
+          return cut;
+        }
       const std::size_t ampersands = text.find("&&");
       const std::string place_text = text.substr(0, ampersands);
       const bool        is_plane   = place_text.find('=') != std::string::npos;
@@ -195,8 +205,12 @@ namespace Debond
         dealii::Utilities::split_string_list(place_text, is_plane ? '=' : '|');
       if (sides.size() != 2)
         throw std::invalid_argument(
-          text + " is neither a line of the mesh, as y = 2 or y = 2 && x < 60, "
-                 "nor two regions, as core | ring");
+          text +
+          " is neither a line of the mesh, as y = 2 or y = 2 && x < 60, "
+          "nor two regions, as core | ring, nor a group of faces" +
+          (groups.empty() ?
+             "" :
+             ", as " + join({groups.begin(), groups.end()}, ", ")));
       const std::size_t axis = std::string("xyz").substr(0, dim).find(sides[0]);
       double            place = 0.;
       if (!is_plane)
@@ -226,15 +240,15 @@ namespace Debond
       // for the condition. A face is on the plane if all of its vertices are,
       // but for the rounding of coordinates, which grows with their distance
       // from the origin.
-      const dealii::Tensor<2, dim> rotation = rotation_matrix<dim>(degrees);
-      cut.normal = rotation * dealii::Point<dim>::unit_vector(
-                                static_cast<unsigned int>(axis));
+      cut.normal = cut.rotation * dealii::Point<dim>::unit_vector(
+                                    static_cast<unsigned int>(axis));
       std::function<bool(const dealii::Point<dim> &)> condition;
       if (ampersands != std::string::npos)
         condition = make_condition<dim>("Mesh/Cuts",
                                         text.substr(ampersands + 2),
                                         constants);
-      cut.contains = [=, normal = cut.normal](const auto &face) {
+      cut.contains = [=, normal = cut.normal, rotation = cut.rotation](
+                       const auto &face) {
         for (unsigned int v = 0; v < dim; ++v)
           if (std::abs(face->vertex(v) * normal - place) >
               Tolerance::same_coordinate *

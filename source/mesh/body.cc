@@ -29,13 +29,14 @@ namespace Debond
   Body<dim>::boundaries() const
   {
     // The names follow from the description of the body alone, so that a scene
-    // is checked before a mesh is made. A cut has three names: one for each of
-    // its sides and one for both.
+    // is checked before a mesh is made. A cut has a name for each of its sides
+    // and one for both, and three more if it is along a group.
     std::set<std::string> names;
     for (const auto &[name, unused] : whole_names().boundaries)
       names.insert(name);
     for (const Cut<dim> &cut : cuts)
-      names.insert({cut.name, cut.name + "_low", cut.name + "_high"});
+      for (const std::string &name : cut.names())
+        names.insert({name, name + "_low", name + "_high"});
     for (const Part<dim> &part : parts)
       if (!part.boundary.empty())
         names.insert(part.name);
@@ -70,6 +71,14 @@ namespace Debond
     PieceNames names = whole_names();
     if (!cuts.empty())
       names = cut_into_bodies(cuts, names, mesh);
+    for (const auto &[unused, group] : names.inner_groups)
+      names.notes.insert(names.notes.end(),
+                         group.notes.begin(),
+                         group.notes.end());
+    if (names.n_twins > 0)
+      names.notes.push_back(names.note_on_twins);
+    names.inner_groups.clear();
+    names.n_twins = 0;
     return parts.empty() ? names : name_parts(parts, names, mesh);
   }
 

@@ -163,12 +163,25 @@ namespace Debond
                 "faces."));
             crossed.add_cell(simplex, cell->material_id());
           }
-        // Only faces on the boundary have ids here. Triangulation gives the
-        // faces inside theirs by itself.
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary())
+        // Triangulation gives the faces inside their boundary ids by itself,
+        // but not the manifold ids by which a cut finds them, and wants each of
+        // them once.
+        for (const unsigned int f : cell->face_indices())
+          {
+            const auto face = cell->face(f);
+            const bool is_inner =
+              !face->at_boundary() &&
+              face->manifold_id() != dealii::numbers::flat_manifold_id &&
+              cell->active_cell_index() <
+                cell->neighbor(f)->active_cell_index();
+            if (!face->at_boundary() && !is_inner)
+              continue;
             for (const auto &part : crossing.parts(corners_of(face)))
-              crossed.add_face(part, face->boundary_id());
+              if (is_inner)
+                crossed.add_inner_face(part, face->manifold_id());
+              else
+                crossed.add_face(part, face->boundary_id());
+          }
       }
     // The vertices of a refined coarse mesh may include some that no active
     // cell has.

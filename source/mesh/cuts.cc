@@ -2,6 +2,7 @@
 #include <debond/base/instantiate.h>
 #include <debond/base/text.h>
 #include <debond/mesh/cuts.h>
+#include <debond/mesh/face_groups.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/mesh_data.h>
 
@@ -30,16 +31,7 @@ namespace Debond
 
 
 
-    /// A face between two cells through which a cut goes.
-    template <int dim>
-    struct CutFace
-    {
-      unsigned int              cut;
-      std::vector<unsigned int> vertices;
-      std::array<Cell<dim>, 2>  cells; ///< on the low side, on the high one
-    };
-
-    /// They are found by the numbers of the faces in the mesh.
+    /// They are found by their numbers in the mesh.
     template <int dim>
     using CutFaces = std::map<unsigned int, CutFace<dim>>;
 
@@ -48,11 +40,24 @@ namespace Debond
     template <int dim>
     CutFaces<dim>
     find_faces(const std::vector<Cut<dim>>      &cuts,
-               const RegionNames                &regions,
+               const PieceNames                 &names,
                const dealii::Triangulation<dim> &mesh)
     {
       CutFaces<dim>     faces;
       std::vector<char> has_faces(cuts.size(), 0);
+      const auto        add = [&](const unsigned int k, CutFace<dim> face) {
+        // A face in two cuts would have two interfaces at one place, whose
+        // bonds would both act.
+        face.cut = k;
+        if (!faces.emplace(face.index, face).second)
+          throw std::invalid_argument(cuts[k].text +
+                                      " overlaps a cut before it");
+        has_faces[k] = 1;
+      };
+      for (unsigned int k = 0; k < cuts.size(); ++k)
+        if (!cuts[k].group.empty())
+          for (const CutFace<dim> &face : faces_of_group(cuts[k], names, mesh))
+            add(k, face);
       for (const auto &cell : mesh.active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           {
@@ -65,11 +70,13 @@ namespace Debond
             const auto other = cell->neighbor(f);
             for (unsigned int k = 0; k < cuts.size(); ++k)
               {
+                if (!cuts[k].group.empty())
+                  continue;
                 // A cell may belong to several regions, therefore its id is
                 // looked up in the ids that the region has.
                 const auto is_in = [&](const auto        &of,
                                        const std::string &region) {
-                  return regions.at(region).count(of->material_id()) > 0;
+                  return names.regions.at(region).count(of->material_id()) > 0;
                 };
                 const bool is_cut =
                   cuts[k].low.empty() ?
@@ -78,15 +85,11 @@ namespace Debond
                     is_in(cell, cuts[k].low) && is_in(other, cuts[k].high);
                 if (!is_cut)
                   continue;
-                const CutFace<dim> face = {k,
-                                           vertices_of(cell->face(f)),
-                                           {{cell, other}}};
-                // A face in two cuts would have two interfaces at one place,
-                // whose bonds would both act.
-                if (!faces.emplace(cell->face_index(f), face).second)
-                  throw std::invalid_argument(cuts[k].text +
-                                              " overlaps a cut before it");
-                has_faces[k] = 1;
+                const auto vertices = vertices_of(cell->face(f));
+                add(k,
+                    {cell->face_index(f),
+                     {{cell, other}},
+                     {{vertices, vertices}}});
               }
           }
       for (unsigned int k = 0; k < cuts.size(); ++k)
@@ -166,6 +169,89 @@ namespace Debond
       // that both vertices belong together.
       data.vertices.push_back(place);
     }
+
+
+
+    /// The id of the low side of a cut, the next one being that of the high
+    /// side, by the cut and by the id that its faces have had.
+    using SideIds =
+      std::map<std::pair<unsigned int, dealii::types::boundary_id>,
+               dealii::types::boundary_id>;
+
+    /// Finds them and changes the names.
+    template <int dim>
+    SideIds
+    name_sides(const std::vector<Cut<dim>>      &cuts,
+               const CutFaces<dim>              &faces,
+               const dealii::Triangulation<dim> &mesh,
+               PieceNames                       &names)
+    {
+      // The ids are above all that are in use, in the order of the cuts. Such a
+      // boundary id is unique to the side of one cut, which keeps the names of
+      // outer boundaries as they are. Outer faces that become a cut keep other
+      // names that they have, and no other face has the ids that they had.
+      SideIds ids;
+      for (const auto &[unused, face] : faces)
+        ids[{face.cut, face.before}] = 0;
+      dealii::types::boundary_id next = 0;
+      for (const auto id : mesh.get_boundary_ids())
+        next = std::max<dealii::types::boundary_id>(next, id + 1);
+      std::vector<std::array<std::set<dealii::types::boundary_id>, 2>> sides(
+        cuts.size());
+      for (auto &[key, id] : ids)
+        {
+          for (auto &[unused, named] : names.boundaries)
+            if (named.erase(key.second) > 0)
+              named.insert({next, next + 1u});
+          id = next++;
+          sides[key.first][0].insert(id);
+          sides[key.first][1].insert(next++);
+        }
+      for (unsigned int k = 0; k < cuts.size(); ++k)
+        {
+          auto both = sides[k][0];
+          both.insert(sides[k][1].begin(), sides[k][1].end());
+          names.interfaces.insert(cuts[k].name);
+          const BoundaryNames own = {{"", both},
+                                     {"_low", sides[k][0]},
+                                     {"_high", sides[k][1]}};
+          for (const auto &[side, named] : own)
+            {
+              names.boundaries[cuts[k].name + side] = named;
+              if (!cuts[k].group.empty())
+                names.boundaries.emplace(cuts[k].group + side, named);
+              names.inner_groups.erase(cuts[k].group);
+            }
+        }
+      return ids;
+    }
+
+
+
+    /// The note on the faces of a cut that do not open, one of them at
+    /// @p place. Throws std::invalid_argument if there are no others.
+    template <int dim>
+    std::string
+    note_on_closed(const std::string        &cut,
+                   const bool                has_others,
+                   const std::size_t         n,
+                   const dealii::Point<dim> &place)
+    {
+      // In 3D unstructured meshes have such faces in the corners of a surface.
+      if (!has_others)
+        throw std::invalid_argument(
+          words(cut,
+                " has a single face at ",
+                point_text(place),
+                " between two points inside, which does not open"));
+      return words(n,
+                   " of the faces of ",
+                   cut,
+                   ", such as at ",
+                   point_text(place),
+                   ", have all of their corners at its end inside the body, "
+                   "and do not open");
+    }
   } // namespace
 
 
@@ -181,13 +267,27 @@ namespace Debond
     // mesh, whose connections between cells are needed until the end. Only
     // vertices on a cut are looked at, so that the work is proportional to the
     // length of the cut beside one pass over all cells.
-    const CutFaces<dim> faces = find_faces(cuts, before.regions, mesh);
+    const CutFaces<dim> faces = find_faces(cuts, before, mesh);
+    PieceNames          names = before;
     MeshData<dim>       data;
     data.vertices = mesh.get_vertices();
     std::map<unsigned int, std::vector<Cell<dim>>> cells_at; // the cuts
+    std::set<unsigned int>                         twins;
     for (const auto &[unused, face] : faces)
-      for (const unsigned int v : face.vertices)
-        cells_at[v];
+      if (face.is_inner())
+        for (const unsigned int v : face.vertices[0])
+          cells_at[v];
+      else
+        for (unsigned int v = 0; v < dim; ++v)
+          if (const unsigned int low = face.vertices[0][v],
+              high                   = face.vertices[1][v];
+              low != high)
+            {
+              // Files have the places of both with some digits.
+              data.vertices[high] = data.vertices[low];
+              twins.insert({low, high});
+            }
+    names.n_twins -= std::min(names.n_twins, twins.size());
     for (const auto &cell : mesh.active_cell_iterators())
       {
         data.add_cell(vertices_of(cell), cell->material_id());
@@ -198,21 +298,10 @@ namespace Debond
     for (const auto &[v, cells] : cells_at)
       open_vertex(v, cells, faces, data);
 
-    // The two sides get ids above all that are in use, low and high next to
-    // each other, in the order of the cuts. Such a boundary id is unique to the
-    // side of one cut, which keeps the names of outer boundaries as they are.
-    PieceNames                 names = before;
-    dealii::types::boundary_id next  = 0;
-    for (const auto id : mesh.get_boundary_ids())
-      next = std::max<dealii::types::boundary_id>(next, id + 1);
-    const auto first_id = next;
-    for (const Cut<dim> &cut : cuts)
-      {
-        names.boundaries[cut.name]           = {next, next + 1u};
-        names.boundaries[cut.name + "_low"]  = {next++};
-        names.boundaries[cut.name + "_high"] = {next++};
-        names.interfaces.insert(cut.name);
-      }
+    const SideIds ids = name_sides(cuts, faces, mesh, names);
+    std::set<dealii::types::boundary_id> is_left; // by all faces that had it
+    for (const auto &[side, unused] : ids)
+      is_left.insert(side.second);
 
     // The vertices that a cell has now on a face of the old mesh. After the
     // vertices have been opened they differ between the two cells at a cut
@@ -227,25 +316,30 @@ namespace Debond
     };
     for (const auto &cell : mesh.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
-        if (face->at_boundary())
+        if (face->at_boundary() && is_left.count(face->boundary_id()) == 0)
           data.add_face(side(cell, vertices_of(face)), face->boundary_id());
+    std::map<unsigned int, std::vector<unsigned int>> open, closed; // by cuts
     for (const auto &[unused, face] : faces)
       {
-        const auto id   = first_id + 2 * face.cut;
-        const auto low  = side(face.cells[0], face.vertices),
-                   high = side(face.cells[1], face.vertices);
+        const auto low  = side(face.cells[0], face.vertices[0]),
+                   high = side(face.cells[1], face.vertices[1]);
         // Both cells have the same vertices on a face if none of them could be
         // opened. Such a face would remain inside the mesh, where deal.II does
         // not accept a boundary id.
-        if (std::is_permutation(low.begin(), low.end(), high.begin()))
-          throw std::invalid_argument(
-            words(cuts[face.cut].text,
-                  " has a single face at ",
-                  point_text(mesh.get_vertices()[face.vertices[0]]),
-                  " between two points inside, which does not open"));
+        const bool is_closed =
+          std::is_permutation(low.begin(), low.end(), high.begin());
+        (is_closed ? closed : open)[face.cut].push_back(face.vertices[0][0]);
+        if (is_closed)
+          continue;
+        const auto id = ids.at({face.cut, face.before});
         data.add_face(low, id);
         data.add_face(high, id + 1);
       }
+    for (const auto &[k, vertices] : closed)
+      names.notes.push_back(note_on_closed(cuts[k].text,
+                                           open.count(k) > 0,
+                                           vertices.size(),
+                                           data.vertices[vertices[0]]));
     mesh.clear();
     data.make_mesh(mesh);
     return names;

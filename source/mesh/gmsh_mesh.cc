@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <debond/base/instantiate.h>
@@ -53,7 +54,7 @@ namespace Debond
       make()
       {
         auto          source = std::make_unique<SourceMesh<dim>>();
-        GroupIds      boundary_ids, region_ids;
+        GroupIds      boundary_ids, region_ids, inner_ids;
         MeshData<dim> data;
         // Quadrilaterals and hexahedra go to deal.II as they are, so that they
         // can be halved before they are crossed. Any other mesh is one of
@@ -68,11 +69,21 @@ namespace Debond
         for (const auto &[unused, face] : outer_faces)
           data.add_face(face.corners, boundary_ids.id(face.groups));
 
+        // Faces inside have no boundary id. Their manifold ids survive copies
+        // and refinements.
+        for (const auto &[unused, face] : inner_faces)
+          data.add_inner_face(face.corners, inner_ids.id(face.groups));
+
+        std::map<std::string, std::set<dealii::types::manifold_id>> ids_of;
         take_names(boundary_ids, dim - 1, source->names.boundaries);
         take_names(region_ids, dim, source->names.regions);
-        source->inner_groups = inner_groups;
-        if (n_twins > 0)
-          notes.push_back(words("there are ", n_twins, " nodes", on_one_place));
+        take_names(inner_ids, dim - 1, ids_of);
+        for (const auto &[name, ids] : ids_of)
+          inner_groups[name].ids = ids;
+        source->names.inner_groups = inner_groups;
+        source->names.n_twins      = n_twins;
+        source->names.note_on_twins =
+          words("there are ", n_twins, " nodes", on_one_place);
         if (is_of_higher_order)
           notes.push_back(
             "the file's elements are of higher order, of which the corners are "
@@ -96,6 +107,8 @@ namespace Debond
             dealii::GridTools::consistently_order_cells(data.cells);
           }
         data.make_mesh(source->mesh);
+        for (const auto &[unused, id] : inner_ids.ids)
+          source->mesh.set_manifold(id, dealii::FlatManifold<dim>());
         return source;
       }
 
@@ -397,6 +410,7 @@ namespace Debond
           else
             {
               neighbours.push_back({sides[s].cell, sides[s + 1].cell});
+              inside.push_back(sides[s].face);
               ++s;
             }
       }
@@ -406,15 +420,16 @@ namespace Debond
       void
       take_groups()
       {
-        std::map<int, std::array<std::size_t, 2>> counts; // on it or not
+        // On the boundary, inside, away from the body.
+        std::map<int, std::array<std::size_t, 3>> counts;
         for (Element &face : faces)
           {
             if (face.groups.empty())
               continue;
-            // A face is on the boundary if all pieces that it is cut into are.
-            // `outside` is sorted by face, and a lower bound with the cell 0
-            // finds the entry of that face. The centre of a quadrilateral has
-            // the same number as when the cells were cut.
+            // A face is on the boundary (inside) if all pieces that it is cut
+            // into are. `outside` is sorted by face, and a lower bound with the
+            // cell 0 finds the entry of that face. The centre of a
+            // quadrilateral has the same number as when the cells were cut.
             const std::vector<Corners> pieces = crossing.parts(face.corners);
             const bool                 is_outside = std::all_of(
               pieces.begin(), pieces.end(), [&](const Corners &piece) {
@@ -424,9 +439,17 @@ namespace Debond
                                    std::make_pair(key(piece), std::size_t(0)));
                 return outer != outside.end() && outer->first == key(piece);
               });
+            const bool is_inside =
+              std::all_of(pieces.begin(),
+                          pieces.end(),
+                          [&](const Corners &piece) {
+                            return std::binary_search(inside.begin(),
+                                                      inside.end(),
+                                                      key(piece));
+                          });
             for (const int group : face.groups)
-              ++counts[group][is_outside ? 0 : 1];
-            if (is_outside)
+              ++counts[group][is_outside ? 0 : is_inside ? 1 : 2];
+            if (is_outside || is_inside)
               for (const Corners &piece :
                    is_cut ? pieces : std::vector<Corners>{face.corners})
                 {
@@ -434,24 +457,29 @@ namespace Debond
                   // for each of them. Its id is that of the combination.
                   Corners sorted = piece;
                   std::sort(sorted.begin(), sorted.end());
-                  Element &outer = outer_faces[sorted];
-                  outer.corners  = piece;
-                  outer.groups.insert(face.groups.begin(), face.groups.end());
+                  Element &known =
+                    (is_outside ? outer_faces : inner_faces)[sorted];
+                  known.corners = piece;
+                  known.groups.insert(face.groups.begin(), face.groups.end());
                 }
           }
         for (const auto &[group, n] : counts)
-          if (n[1] > 0)
-            {
-              const std::string &name = names.at({dim - 1, group});
-              inner_groups.insert(name);
-              notes.push_back(words(
-                n[1],
-                " of ",
-                n[0] + n[1],
-                " faces of the group ",
-                name,
-                " lie inside the body or away from it, and are left out"));
-            }
+          for (const unsigned int k : {1u, 2u})
+            if (n[k] > 0)
+              {
+                const std::string &name  = names.at({dim - 1, group});
+                InnerGroup        &inner = inner_groups[name];
+                // A cut uses what is inside.
+                (k == 1 ? inner.notes : notes)
+                  .push_back(words(n[k],
+                                   " of ",
+                                   n[0] + n[1] + n[2],
+                                   " faces of the group ",
+                                   name,
+                                   k == 1 ? " lie inside the body" :
+                                            " lie away from the body",
+                                   ", and are left out"));
+              }
       }
 
       /// Checks that one comes from every cell to every other through faces.
@@ -598,10 +626,12 @@ namespace Debond
       std::vector<Simplex> simplices;
       std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
       std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
-      std::map<Corners, Element> outer_faces; ///< in groups, by sorted corners
-      std::set<std::string>      inner_groups;
-      std::vector<std::string>   notes;
-      std::size_t                n_twins = 0;
+      std::vector<FaceKey>                             inside;
+      std::map<Corners, Element> outer_faces, ///< in groups, by sorted
+        inner_faces;                          ///< corners
+      std::map<std::string, InnerGroup> inner_groups;
+      std::vector<std::string>          notes;
+      std::size_t                       n_twins = 0;
     };
   } // namespace
 

@@ -30,8 +30,7 @@ namespace Debond
       if (file)
         {
           source->mesh.copy_triangulation(file->mesh);
-          source->names        = file->names;
-          source->inner_groups = file->inner_groups;
+          source->names = file->names;
           source->refine(n_refinements);
         }
       else

@@ -16,7 +16,8 @@ namespace Debond
     // The source without refinements is kept, for its names, the number of its
     // cells and its kind of cells. A refinement of simplices throws at once,
     // before anything else is made of the body.
-    this->inner_groups = source->inner_groups;
+    for (const auto &[name, unused] : source->names.inner_groups)
+      this->inner_groups.insert(name);
     if (source->mesh.all_reference_cells_are_simplex() && n_refinements > 0)
       make(n_refinements); // says that they are not halved
   }
@@ -42,17 +43,17 @@ namespace Debond
   MeshBody<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     if (source->mesh.all_reference_cells_are_simplex())
-      {
-        mesh.copy_triangulation(source->mesh);
-        // All sides are flat between the vertices, wherever these came from:
-        // the elements are affine, and no point may be moved to a curve
-        // afterwards.
-        mesh.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
-      }
+      mesh.copy_triangulation(source->mesh);
     else
       crossed_subdivision(n_refinements == 0 ? source->mesh :
                                                make(n_refinements)->mesh)
         .make_mesh(mesh);
+    // All sides are flat between the vertices, wherever these came from: the
+    // elements are affine, and no point may be moved to a curve afterwards. A
+    // cut finds the faces of a group by their manifold ids and makes a mesh
+    // without them.
+    if (this->cuts.empty())
+      mesh.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
   }
 
 

@@ -180,8 +180,8 @@ test_odd_files()
   check("an edge of nothing is noted",
         apart->boundaries() == std::set<std::string>{"1"} &&
           apart->inner_groups == std::set<std::string>{"4"} &&
-          notes(*apart).find("1 of 1 faces of the group 4 lie inside the body "
-                             "or away from it") == 0);
+          notes(*apart).find("1 of 1 faces of the group 4 lie away from the "
+                             "body, and are left out") == 0);
   check("names have no control characters",
         read<2>(with("$Nodes",
                      "$PhysicalNames\n1\n1 1 \"a\x1b[31mb\"\n"
@@ -435,8 +435,8 @@ test_geometry()
         left_out->n_cells() == 18 &&
           notes(*left_out) ==
             "cells left out: 18; surfaces in no group of the file: 1\n"
-            "3 of 6 faces of the group bottom lie inside the body or away from "
-            "it, and are left out\n");
+            "3 of 6 faces of the group bottom lie away from the body, and are "
+            "left out\n");
   parameters.meshing.size = 0.;
   print_error([&] { make_body<3>(parameters); });
   std::ofstream("test.geo") << "SetFactory(\"OpenCASCADE\");\n"
@@ -454,6 +454,174 @@ test_geometry()
 
 
 
+/// The sum of the normals out of the body of the sides of a cut along the group
+/// "cut", their area, and the volume that the low side encloses.
+template <int dim>
+struct Sides
+{
+  Tensor<1, dim>           low;
+  std::array<double, 2>    area{};
+  double                   volume = 0.;
+  std::vector<std::string> notes;
+
+  explicit Sides(const std::string &geometry, const double degrees = 0.)
+  {
+    BodyParameters parameters;
+    parameters.source       = BodyParameters::Source::file;
+    parameters.file         = write(geometry, "test.geo");
+    parameters.box.rotation = degrees;
+    const auto body         = make_body<dim>(parameters);
+    Cut<dim>   cut;
+    cut.name = "cut_1";
+    cut.text = cut.group = "cut";
+    cut.rotation         = rotation_matrix<dim>(degrees);
+    body->cuts           = {cut};
+    Triangulation<dim> mesh;
+    const PieceNames   names = body->make_mesh(mesh);
+    check("  names of a cut along a group",
+          names.boundaries.at("cut") == names.boundaries.at("cut_1") &&
+            names.boundaries.at("cut_low") ==
+              names.boundaries.at("cut_1_low") &&
+            names.boundaries.size() == body->boundaries().size());
+    for (const auto &cell : mesh.active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        for (const unsigned int k : {0u, 1u})
+          if (face->at_boundary() &&
+              names.boundaries.at(k == 0 ? "cut_low" : "cut_high")
+                  .count(face->boundary_id()) > 0)
+            {
+              area[k] += face->measure();
+              if (k == 1)
+                continue;
+              // Away from the cell.
+              Tensor<1, dim> normal;
+              if constexpr (dim == 2)
+                normal = cross_product_2d(face->vertex(1) - face->vertex(0));
+              else
+                normal = cross_product_3d(face->vertex(1) - face->vertex(0),
+                                          face->vertex(2) - face->vertex(0)) /
+                         2.;
+              if (normal * (face->center() - cell->center()) < 0.)
+                normal *= -1.;
+              low += normal;
+              volume += normal * face->center() / dim;
+            }
+    notes = names.notes;
+  }
+};
+
+
+
+/// Where the sides of cuts along groups are; that J is that of other cuts is in
+/// oracle/bodies.
+void
+test_groups()
+{
+  std::cout << "Cuts along a group" << std::endl;
+  const auto square = [](const std::string &points, const std::string &lines) {
+    return "Point(1) = {0, 0, 0, 0.3};\nPoint(2) = {2, 0, 0, 0.3};\n"
+           "Point(3) = {2, 2, 0, 0.3};\nPoint(4) = {0, 2, 0, 0.3};\n"
+           "Line(1) = {1, 2};\nLine(2) = {2, 3};\nLine(3) = {3, 4};\n"
+           "Line(4) = {4, 1};\nCurve Loop(1) = {1, 2, 3, 4};\n"
+           "Plane Surface(1) = {1};\n" +
+           points + lines +
+           "Physical Surface(\"all\") = {1};\n"
+           "Physical Curve(\"side\") = {4};\n";
+  };
+  // A bent line, one on a diagonal, both drawn either way, with other lines.
+  const std::string bent =
+    "Point(5) = {0.5, 1, 0, 0.1};\nPoint(6) = {1, 1.3, 0, 0.1};\n"
+    "Point(7) = {1.5, 0.9, 0, 0.1};\n";
+  for (const std::string line :
+       {"Spline(5) = {5, 6, 7};", "Spline(5) = {7, 6, 5};"})
+    {
+      const std::string cut =
+        line + "Line {5} In Surface {1};\nPhysical Curve(\"cut\") = {5};\n";
+      const Sides<2> sides(square(bent, cut)), turned(square(bent, cut), 120.);
+      check("a bent line, low below it",
+            (sides.low - Point<2>(0.1, 1.)).norm(),
+            1e-12);
+      check("it turned",
+            (turned.low - rotation_matrix<2>(120.) * sides.low).norm(),
+            1e-12);
+      check("both sides", std::abs(sides.area[0] - sides.area[1]), 1e-12);
+    }
+  for (const std::string line : {"Line(5) = {5, 6};", "Line(5) = {6, 5};"})
+    check("on the diagonal x decides",
+          (Sides<2>(square("Point(5) = {0.5, 0.5, 0, 0.1};\n"
+                           "Point(6) = {1.5, 1.5, 0, 0.1};\n",
+                           line + "Line {5} In Surface {1};\n"
+                                  "Physical Curve(\"cut\") = {5};\n"))
+             .low -
+           Point<2>(1., -1.))
+            .norm(),
+          1e-12);
+  // Two pieces, and a circle.
+  const Sides<2> two(
+    square("Point(5) = {0.5, 0.3, 0, 0.1};\nPoint(6) = {1.5, 0.3, 0, 0.1};\n"
+           "Point(7) = {0.5, 1, 0, 0.1};\nPoint(8) = {0.5, 1.5, 0, 0.1};\n",
+           "Line(5) = {6, 5};\nLine(6) = {8, 7};\n"
+           "Line {5, 6} In Surface {1};\nPhysical Curve(\"cut\") = {5, 6};\n"));
+  check("two pieces", (two.low - Point<2>(0.5, 1.)).norm(), 1e-12);
+  const Sides<2> circle("SetFactory(\"OpenCASCADE\");\n"
+                        "Rectangle(1) = {0, 0, 0, 4, 4};\n"
+                        "Disk(2) = {2, 2, 0, 1};\n"
+                        "BooleanFragments{ Surface{1}; Delete; }"
+                        "{ Surface{2}; Delete; }\n"
+                        "Physical Surface(\"all\") = {2, 3};\n"
+                        "Physical Curve(\"cut\") = Boundary{ Surface{2}; };\n");
+  check("a circle, high outside",
+        circle.low.norm() < 1e-12 && circle.volume > 2.5 &&
+          circle.volume < 3.1416);
+}
+
+
+
+/// A tube through the body, and a rectangle inside, two corners of which have
+/// triangles that do not open.
+void
+test_surfaces()
+{
+  const Sides<3> tube(
+    "SetFactory(\"OpenCASCADE\");\n"
+    "Box(1) = {0, 0, 0, 2, 2, 1};\n"
+    "Cylinder(2) = {1, 1, 0, 0, 0, 1, 0.5};\n"
+    "BooleanFragments{ Volume{1}; Delete; }"
+    "{ Volume{2}; Delete; }\n"
+    "Mesh.MeshSizeMax = 0.4;\n"
+    "Physical Volume(\"all\") = {2, 3};\n"
+    "eps = 0.01;\n"
+    "cut() = Surface In BoundingBox"
+    "{0.5 - eps, 0.5 - eps, -eps, 1.5 + eps, 1.5 + eps, "
+    "1 + eps};\n"
+    "caps() = Surface In BoundingBox"
+    "{0.5 - eps, 0.5 - eps, -eps, 1.5 + eps, 1.5 + eps, eps};\n"
+    "caps() += Surface In BoundingBox"
+    "{0.5 - eps, 0.5 - eps, 1 - eps, 1.5 + eps, 1.5 + eps, "
+    "1 + eps};\n"
+    "cut() -= caps();\n"
+    "Physical Surface(\"cut\") = cut();\n");
+  check("a tube, high outside", tube.low.norm() < 1e-12 && tube.volume > 0.);
+  const std::string plate =
+    "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 2, 2, 2};\n"
+    "Rectangle(100) = {0.5, 0.5, 1, 1, 1};\n"
+    "BooleanFragments{ Volume{1}; Delete; }{ Surface{100}; Delete; }\n"
+    "Mesh.MeshSizeMax = 0.3;\nedges() = Boundary{ Surface{100}; };\n"
+    "Transfinite Curve {edges()} = 5;\nTransfinite Surface {100};\n"
+    "Physical Volume(\"all\") = {1};\n"
+    "Physical Surface(\"cut\") = {100};\n";
+  const Sides<3> rectangle(plate);
+  check("a rectangle inside",
+        std::abs(rectangle.area[0] - rectangle.area[1]) < 1e-12 &&
+          std::abs(rectangle.area[0] - 15. / 16.) < 1e-12 &&
+          std::abs(rectangle.low[2] - 15. / 16.) < 1e-12);
+  check("what of it does not open is noted",
+        rectangle.notes.size() == 1 &&
+          rectangle.notes[0].find("2 of the faces of cut, such as at (") == 0);
+}
+
+
+
 int
 main(int argc, char **)
 {
@@ -464,4 +632,6 @@ main(int argc, char **)
   test_other_formats();
   test_mixed_cells();
   test_geometry();
+  test_groups();
+  test_surfaces();
 }

@@ -7,11 +7,13 @@ from a generator, and with parts and regions that make no difference: J is the s
 to 1e-12, and so are the contact nodes; also of a bar in 3D. What is wrong with a
 mesh or a part is told with its place. The same scene twice gives the same files but for
 times and memory, with other numbers of threads the same J, mirrored the mirrored answer.
+Cuts along groups of faces are those by conditions and between regions.
 """
 
 import json
 import os
 import pathlib
+import random
 import shutil
 import sys
 
@@ -96,6 +98,172 @@ def check_solid():
     solid = ["Dimension=3", "Traction top=0; if(x < 0.2, 0.69, -0.345); 0.1"]
     check_same([(name, *solid, *entries) for name, *entries in [
         ("box", "Lengths=0.4, 0.04, 0.05", "Cells=6, 2, 1"), *odd]])
+
+
+SIDES_OF = {3: ((0, 1), (1, 2), (2, 0)), 4: ((0, 1), (1, 2), (2, 3), (3, 0)),
+            8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
+                (3, 0, 4, 7))}
+GROUP = 20
+HALF = "y = 0.02 && x < 0.2"
+
+
+def names(dim, name="glue"):
+    return {**{(dim - 1, k): side for k, side in enumerate(msh.SIDES[:2 * dim], 1)},
+            (dim, 7): "all", **({(dim - 1, GROUP): name} if name else {})}
+
+
+def grouped(mesh, is_in, order=None):
+    """With the sides of cells whose centre is in the group, each once; in any order and
+    turned either way if an order is given."""
+    points, faces, cells = mesh
+    cells = [((7,), corners) for _, corners in cells]
+    known = {}
+    for _, corners in cells:
+        for side in SIDES_OF[len(corners)]:
+            face = [corners[k] for k in side]
+            if is_in([sum(points[v][d] for v in face) / len(face)
+                      for d in range(len(points[0]))]):
+                known.setdefault(frozenset(face), face)
+    group = [((GROUP,), face) for face in known.values()]
+    if order:
+        order.shuffle(group)
+        order.shuffle(cells)
+        group = [(g, face[::order.choice((1, -1))]) for g, face in group]
+    return points, faces + group, cells
+
+
+def opened(mesh, y, end):
+    """The group is an open crack: cells above it have nodes of their own."""
+    points, faces, cells = mesh
+    new = {v: len(points) + k for k, v in enumerate(
+        v for v, p in enumerate(points) if abs(p[1] - y) < 1e-9 and p[0] < end - 1e-9)}
+    # Files have the places of both nodes with some digits.
+    points = points + [tuple(x * (1 + 1e-13) for x in points[v]) for v in new]
+
+    def above(corners):
+        upper = sum(points[v][1] for v in corners) > len(corners) * y
+        return [new.get(v, v) if upper else v for v in corners]
+
+    cells = [(g, above(corners)) for g, corners in cells]
+    twins = [(g, [new.get(v, v) for v in corners]) for g, corners in faces if g == (GROUP,)]
+    return points, [(g, corners if g == (GROUP,) else above(corners))
+                    for g, corners in faces] + twins, cells
+
+
+def on_half(centre):
+    return abs(centre[1] - 0.02) < 1e-9 and centre[0] < 0.2
+
+
+def check_groups():
+    """Cuts along a group, with an end inside, are those by a condition."""
+    plain = bar(40, 4)
+    mixed = (*plain[:2], [(g, part) for k, (g, v) in enumerate(plain[2])
+                          for part in ([v] if k % 3 else [v[:3], [v[0], v[2], v[3]]])])
+    order = random.Random(2)
+    base = ["Contact boundary=cut_1, bottom", "Traction top=0; 0.6"]
+    groups = [("quadrilaterals", plain, []), ("triangles", bar(40, 4, crossed=True), []),
+              ("coarse", bar(20, 2), ["Refinements=1"]), ("mixed", mixed, [])]
+    for name, mesh, more in groups:
+        cases = []
+        write_mesh("whole-" + name, *grouped(mesh, lambda centre: False), names=names(2, None))
+        write_mesh("group-" + name, *grouped(mesh, on_half), names=names(2))
+        write_mesh("odd-" + name, *grouped(mesh, on_half, order), names=names(2, None))
+        write_mesh("open-" + name, *opened(grouped(mesh, on_half), 0.02, 0.2), names=names(2))
+        check_same([("a condition", *base, *file("whole-" + name), "Cuts=" + HALF, *more),
+                    (name + ", a group", *base, *file("group-" + name), "Cuts=glue",
+                     "Contact boundary=glue, bottom", *more),
+                    (name + ", a number", *base, *file("odd-" + name), f"Cuts={GROUP}", *more),
+                    (name + ", pressures that cancel", *base, *file("group-" + name), "Cuts=glue",
+                     "Pressure cut_1=0.02", "Pressure glue_low=-0.02", "Pressure glue_high=-0.02",
+                     *more)]
+                   + [(name + ", open already", *base, *file("open-" + name), "Cuts=glue",
+                       "Contact boundary=glue, bottom", *more)])
+
+
+def check_solid_groups():
+    solid = ["Dimension=3", "Traction top=0; 0.1; 0", "Contact boundary=cut_1, bottom",
+             "Source=file"]
+    for n, more in (((6, 2, 1), []), ((3, 2, 1), ["Refinements=1"])):
+        mesh = msh.box(n, (0.4, 0.04, 0.05))
+        end = 0.4 * (2 * n[0] // 3) / n[0]
+        half = lambda c: abs(c[1] - 0.02) < 1e-9 and c[0] < end
+        write_mesh("solid", *grouped(mesh, half), names=names(3))
+        write_mesh("open-solid", *opened(grouped(mesh, half), 0.02, end), names=names(3))
+        check_same([("a condition", *solid, "File=solid.msh", f"Cuts=y = 0.02 && x < {end}",
+                     *more),
+                    (f"solid {n}", *solid, "File=solid.msh", "Cuts=glue", *more),
+                    (f"solid {n}, open already", *solid, "File=open-solid.msh", "Cuts=glue",
+                     *more)])
+
+
+def check_fibre():
+    """The surface of a fibre is where it and the matrix meet; its high side is outside."""
+    (scenes.directory / "fibre.geo").write_text("""SetFactory("OpenCASCADE");
+        Rectangle(1) = {0, 0, 0, 4, 4};
+        Disk(2) = {2, 2, 0, 1};
+        BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
+        Mesh.MeshSizeMax = 0.4;
+        Physical Surface("fibre") = {2};
+        Physical Surface("matrix") = {3};
+        Physical Curve("skin") = Boundary{ Surface{2}; };
+        sides() = CombinedBoundary{ Surface{2, 3}; };
+        Physical Curve("side") = {sides(0)};
+        Physical Curve("all sides") = sides();
+        """)
+    base = ["Source=file", "File=fibre.geo", "Clamped boundaries=side", "Contact boundary=cut_1",
+            "Traction top=", "Traction all sides=0.1; 0.2", "Young modulus=10",
+            "Body force=0; -1"]
+    results = [solve(MM, *base, "Cuts=" + cut) for cut in (
+        "fibre | matrix", "skin", "matrix | fibre")]
+    for result, sign in zip(results[1:], (1, -1)):
+        close("a fibre", result["functional"], results[0]["functional"], 1e-12)
+        for one, other in zip(result["contact_reaction"], results[0]["contact_reaction"],
+                              strict=True):
+            close("the force on it", one, sign * other, 1e-9, 1.)
+    check("it is pulled", results[0]["contact_reaction"][1] < -1., results[0]["contact_reaction"])
+
+
+# Seven sides of the cells of a cube of 3 x 3 x 3, by their centres.
+TWISTED = [(1.5, 1.5, 1), (2, 1.5, 1.5), (1.5, 1.5, 2), (0.5, 1.5, 2), (1.5, 1, 0.5),
+           (0.5, 1, 0.5), (0.5, 1, 1.5)]
+
+
+def check_refused_groups():
+    plain = bar(40, 4)
+    branch = grouped(plain, lambda c: on_half(c) or abs(c[0] - 0.1) < 1e-9 and c[1] > 0.02)
+    partly = grouped(plain, lambda c: on_half(c) or c[0] == 0. and c[1] > 0.02)
+    side = grouped(plain, lambda c: c[0] == 0.)
+    single = grouped(plain, lambda c: on_half(c) and 0.1 < c[0] < 0.11)
+    band = grouped(msh.box((3, 3, 3), (3., 3., 3.)),
+                   lambda c: min(sum(abs(x - y) for x, y in zip(c, centre))
+                                 for centre in TWISTED) < 1e-9)
+    for name, mesh, message in (
+            ("branch", branch, "the group glue branches, and cannot be cut along as one, at "
+                               "(0.1, 0.02)"),
+            ("partly", partly, "leave out its faces there, as at (0, 0.0"),
+            ("side", side, "only two of its faces at one place can be the sides of a cut, "
+                           "unlike at (0, "),
+            ("single", single, "glue has a single face"),
+            ("band", band, "the group glue has one side only")):
+        write_mesh(name, *mesh, names=names(len(mesh[0][0])))
+        more = ["Dimension=3", "Traction top="] if name == "band" else []
+        result = solve(*file(name), "Cuts=glue", "Contact boundary=glue", *more)
+        check(message, result["exit_code"] == 2 and message in result["errors"]
+              and "Mesh/Cuts" in result["errors"], result["errors"])
+    result = solve(*file("branch"), "Cuts=glu")
+    check("groups that there are", result["exit_code"] == 2
+          and "nor a group of faces, as bottom, glue, left, right, top" in result["errors"],
+          result["errors"])
+    result = solve(*file("branch"), "Contact boundary=glue")
+    check("how to cut there", "by Mesh/Cuts = glue" in result["errors"], result["errors"])
+    for cuts, n in ([], 1), (["Cuts=glue", "Contact boundary=glue"], 0):
+        result = solve(*file("group-quadrilaterals"), *cuts)
+        check("notes on a group", len([note for note in result["notes"] if "glue" in note]) == n,
+              result["notes"])
+    for cuts, n in ([], 1), (["Cuts=glue", "Contact boundary=glue"], 0):
+        result = solve(*file("open-quadrilaterals"), *cuts)
+        check("notes on two nodes", n == len([note for note in result["notes"]
+                                              if "at the same place" in note]), result["notes"])
 
 
 def check_sides():

@@ -36,6 +36,22 @@ PLIES = ["Material/Young moduli=69, 20, 20", "Material/Poisson ratios=0.3, 0.3, 
 AXIS = ["Symmetry=axis", "Boundary conditions/Clamped boundaries=right",
         "Loads/Temperature change=100*x", "Material/Thermal expansion=1e-5"]
 
+FAULT = """SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 0.4, 0.04};
+Point(5) = {0.1, 0.015, 0};
+Point(6) = {0.2, 0.025, 0};
+Point(7) = {0.3, 0.02, 0};
+Spline(5) = {5, 6, 7};
+Line {5} In Surface {1};
+Mesh.MeshSizeMax = 0.01;
+Physical Surface("bar") = {1};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2};
+Physical Curve("top") = {3};
+Physical Curve("left") = {4};
+Physical Curve("fault") = {5};
+"""
+
 # Of each a name, a scene and what differs in it.
 SCENES = [
     ("plane", "benchmark-40x4", MM),
@@ -48,6 +64,10 @@ SCENES = [
     ("path of a joint that ends inside", "benchmark-40x4",
      MM + JOINT + SOFT + ["Mesh/Cuts=y = 0.02 && x < 0.3", "Load path/Factors=0.5, 1, 0.5",
                           "Load path/Bonds heal=false"]),
+    ("a group that is cut along, refined", "benchmark-40x4",
+     MM + ["Mesh/Source=file", "Mesh/File=fault.geo", "Mesh/Cuts=fault",
+           "Boundary conditions/Contact boundary=bottom, fault",
+           "Accuracy/Maximum unknowns=2000"]),
     ("joint, refined", "benchmark-40x4",
      MM + JOINT + ["Mesh/Cells=10, 4", "Accuracy/Maximum unknowns=2000"]),
     ("axis by levels", "benchmark-40x4", MG + AXIS),
@@ -225,7 +245,7 @@ def check_scenes(directory):
         files.append(os.path.join(prm, folder, f"ranks-{number}.prm"))
         with open(files[-1], "w") as file:
             file.write(scene_text(base + ".prm", [
-                s.replace("tri.msh", directory + "/tri.msh") for s in settings] + [
+                s.replace("Mesh/File=", f"Mesh/File={directory}/") for s in settings] + [
                 "Output/Displacement=true", "Output/Machine details=false",
                 f"Output/Directory={number}"]))
     for n in 1, 2, 3, 4:
@@ -317,6 +337,8 @@ def check_ends(directory):
 with tempfile.TemporaryDirectory() as directory:
     with open(directory + "/tri.msh", "w") as file:
         file.write(msh.triangles())
+    with open(directory + "/fault.geo", "w") as file:
+        file.write(FAULT)
     check_ends(directory)
     check_start(directory)
     check_scenes(directory)

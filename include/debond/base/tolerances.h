@@ -53,6 +53,10 @@ namespace Debond
     /// Nodes of Gmsh's files on one place or plane, to the size of a face.
     constexpr double same_node = 1e-8;
 
+    /// The sum of the normals of a closed surface to its area, and components
+    /// of such sums that are the same: by rounded coordinates of files.
+    constexpr double closed_surface = 1e-6;
+
     /// The part of the way from a vertex to the centre at which parts are asked
     /// for beside the vertex.
     constexpr double beside_vertex = 1e-3;

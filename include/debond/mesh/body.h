@@ -14,7 +14,9 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace Debond
 {
@@ -68,8 +70,27 @@ namespace Debond
                            contains = {};
     dealii::Tensor<1, dim> normal   = {};
 
-    /// ... or those that these regions have in common.
+    /// ... or those that these regions have in common, ...
     std::string low = "", high = "";
+
+    /// ... or those of a group of the file, in a body that was turned so.
+    std::string            group    = "";
+    dealii::Tensor<2, dim> rotation = {};
+
+    /// The boundaries that are both sides.
+    std::set<std::string>
+    names() const
+    {
+      return group.empty() ? std::set<std::string>{name} :
+                             std::set<std::string>{name, group};
+    }
+  };
+
+  /// What a group of the file has inside the body.
+  struct InnerGroup
+  {
+    std::set<dealii::types::manifold_id> ids; ///< of its faces in the mesh
+    std::vector<std::string> notes;           ///< unless the body is cut there
   };
 
   /// The pieces of a mesh that have names.
@@ -83,6 +104,13 @@ namespace Debond
 
     /// Notes on the pieces for the user.
     std::vector<std::string> notes = {};
+
+    /// Those that depend on cuts: on groups with faces inside or away from the
+    /// body, and on vertices at the place of others. A Body has made notes of
+    /// them.
+    std::map<std::string, InnerGroup> inner_groups  = {};
+    std::size_t                       n_twins       = 0;
+    std::string                       note_on_twins = "";
   };
 
 

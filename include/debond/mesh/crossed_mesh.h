@@ -50,9 +50,9 @@ namespace Debond
    * 3D each hexahedron into 24 tetrahedra spanned by its centre, the centre of
    * a face and an edge of that face.
    *
-   * The material ids of cells and the boundary ids of faces are kept, manifolds
-   * are not: a curved boundary is sampled at the vertices, and all faces are
-   * flat.
+   * The material ids of cells, the boundary ids of faces and the manifold ids
+   * of those inside are kept, manifolds are not: a curved boundary is sampled
+   * at the vertices, and all faces are flat.
    *
    * @p coarse must be a mesh of quadrilaterals (hexahedra) without hanging
    * nodes, all active cells on one level, and each cell's centre must see all

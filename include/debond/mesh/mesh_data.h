@@ -35,6 +35,18 @@ namespace Debond
         add(corners, faces.boundary_quads).boundary_id = id;
     }
 
+    /// A face between two cells, which deal.II lets have no boundary id.
+    template <typename Corners>
+    void
+    add_inner_face(const Corners &corners, const dealii::types::manifold_id id)
+    {
+      add_face(corners, dealii::numbers::internal_face_boundary_id);
+      if constexpr (dim == 2)
+        faces.boundary_lines.back().manifold_id = id;
+      else
+        faces.boundary_quads.back().manifold_id = id;
+    }
+
     /// Fills an empty triangulation.
     void
     make_mesh(dealii::Triangulation<dim> &mesh) const

@@ -14,7 +14,6 @@ namespace Debond
   {
     dealii::Triangulation<dim> mesh;
     PieceNames                 names;
-    std::set<std::string>      inner_groups; ///< with faces not on its boundary
 
     /// Halves the cells in each direction @p n_refinements times. Throws
     /// std::invalid_argument if they are triangles or tetrahedra.
@@ -27,7 +26,7 @@ namespace Debond
    * by @p scale; the @p options have lengths of the body. In 2D z must be the
    * same everywhere. Physical groups of faces are boundaries, those of cells
    * regions, by their names or, without one, by their numbers. Faces that
-   * groups have inside or away from the body belong to no boundary.
+   * groups have inside the body belong to no boundary and have manifold ids.
    *
    * Throws std::invalid_argument with file and line if the mesh has cells of
    * several kinds or none, if a cell is flat or so distorted that its centre
