@@ -66,9 +66,10 @@ namespace Debond
         refuse(!p.load_path.factors.empty() || !p.load_path.dead_loads.empty(),
                "is for a single load",
                {"Load path/Factors", "Load path/Dead loads"});
-        refuse(!table.get("Mesh/Cuts").empty(),
-               "needs one body, Mesh/Cuts makes several",
-               {});
+        for (const std::string entry : {"Mesh/Cuts", "Mesh/Interfaces"})
+          refuse(!table.get(entry).empty(),
+                 "needs one body, of which " + entry + " makes several",
+                 {});
         refuse(!p.supports.normal.empty() || !p.supports.normals.empty(),
                "needs the body's own normals",
                {"Boundary conditions/Foundation normal"});

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/numerics/rtree.h>
 
 #include <debond/base/instantiate.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/adhesion_sums.h>
+#include <debond/mesh/cell_search.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
 
@@ -160,14 +164,15 @@ namespace Debond
         // so that the first one of each cell is what remains. Those on the high
         // side of an interface can be found by their place, for the faces of
         // the low side have no contact faces of their own.
+        std::vector<std::pair<dealii::BoundingBox<dim>, unsigned int>> boxes;
         for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
              f-- > 0;)
           {
             first_contact_face[boundary.faces[f].cell] = f;
             if (given.conditions.high_sides.count(boundary.faces[f].id) > 0)
-              of_interfaces.emplace(
-                place_on_line(middle_of(boundary.faces[f].vertices)), f);
+              boxes.emplace_back(boundary.faces[f].vertices, f);
           }
+        of_interfaces = dealii::pack_rtree(boxes);
         for (const auto &cell : dofs.active_cell_iterators())
           {
             at_points.reinit(cell);
@@ -502,12 +507,7 @@ namespace Debond
         // Those of a cell follow each other.
         const bool   is_low       = given.conditions.low_sides.count(id) > 0;
         unsigned int contact_face = 0;
-        std::array<unsigned int, dim> vertices; // of the contact face
-        for (unsigned int v = 0; v < dim; ++v)
-          vertices[v] = v;
-        if (is_low)
-          contact_face = face_across(cell, f, vertices);
-        else if (is_contact)
+        if (is_contact && !is_low)
           contact_face =
             first_contact_face.at(cell->id().get_coarse_cell_id()) +
             n_contact_faces++;
@@ -544,14 +544,17 @@ namespace Debond
                    (stress_at(face.cell, face.in_cell[v]).whole * normal);
             r += load_factor * given.loads.traction(id, point, normal) +
                  given.dead_loads.traction(id, point, normal);
-            if (is_contact)
+            if (is_low)
               {
-                std::array<double, dim> there;
-                for (unsigned int v = 0; v < dim; ++v)
-                  there[v] = coordinates[vertices[v]];
-                r =
-                  with_foundation(r, face, boundary.faces[contact_face], there);
+                if (const auto [across, there] = face_across(point);
+                    across != nullptr)
+                  r = with_foundation(r, face, *across, there);
               }
+            else if (is_contact)
+              r = with_foundation(r,
+                                  face,
+                                  boundary.faces[contact_face],
+                                  coordinates);
             r = free_part(r, normal, id);
             square += on_face.JxW(q) * circumference(symmetry, point) /
                       measure * (r * (here.yield * r));
@@ -560,46 +563,50 @@ namespace Debond
           fall(square * measure * measure, here.bubble_energy);
       }
 
-      static dealii::Point<dim>
-      middle_of(const std::array<dealii::Point<dim>, dim> &vertices)
+      /// The contact face on the high side of an interface that is across from
+      /// a point of the low side, and the barycentric coordinates there; null
+      /// where nothing is across. What bonds bear is the same along the normals
+      /// of both.
+      std::pair<const typename ContactBoundary<dim>::Face *,
+                std::array<double, dim>>
+      face_across(const dealii::Point<dim> &point) const
       {
-        dealii::Point<dim> middle;
-        for (const dealii::Point<dim> &vertex : vertices)
-          middle += vertex / static_cast<double>(dim);
-        return middle;
-      }
-
-      /// The contact face on the high side of an interface that a face of the
-      /// low side lies on, and for each of its vertices the one here. What
-      /// bonds bear is the same along the normals of both.
-      template <typename CellIterator>
-      unsigned int
-      face_across(const CellIterator            &cell,
-                  const unsigned int             f,
-                  std::array<unsigned int, dim> &vertices) const
-      {
-        std::array<dealii::Point<dim>, dim> here;
-        for (unsigned int v = 0; v < dim; ++v)
-          here[v] = cell->vertex(face_vertices[f][v]);
-        const double near  = Tolerance::same_place * here[0].distance(here[1]);
-        const double place = place_on_line(middle_of(here));
-        for (auto other = of_interfaces.lower_bound(place - 2. * near);
-             other != of_interfaces.end() && other->first <= place + 2. * near;
-             ++other)
+        // Of the nearest faces the point is within one, or at an edge of two.
+        // The coordinates are those in the simplex of the face and a point
+        // above its first vertex.
+        std::vector<std::pair<dealii::BoundingBox<dim>, unsigned int>> near;
+        of_interfaces.query(boost::geometry::index::nearest(point, n_nearest),
+                            std::back_inserter(near));
+        const typename ContactBoundary<dim>::Face *best = nullptr;
+        std::array<double, dim>                    best_place{};
+        double innermost = Tolerance::covered - 1.;
+        for (const auto &[unused, f] : near)
           {
-            const auto  &there   = boundary.faces[other->second].vertices;
-            unsigned int n_found = 0;
-            for (unsigned int v = 0; v < dim; ++v)
-              for (unsigned int w = 0; w < dim; ++w)
-                if (here[w].distance(there[v]) <= near)
-                  {
-                    vertices[v] = w;
-                    ++n_found;
-                  }
-            if (n_found == dim)
-              return other->second;
+            const auto                             &face = boundary.faces[f];
+            std::array<dealii::Point<dim>, dim + 1> corners;
+            std::copy_n(face.vertices.begin(), dim, corners.begin());
+            corners[dim] =
+              corners[0] + corners[0].distance(corners[1]) * face.normal;
+            const auto all = barycentric_coordinates<dim>(corners, point);
+            std::array<double, dim> place;
+            std::copy_n(all.begin(), dim, place.begin());
+            place[0] += all[dim];
+            const double least = *std::min_element(place.begin(), place.end());
+            if (least > innermost)
+              {
+                innermost  = least;
+                best       = &face;
+                best_place = place;
+              }
           }
-        throw std::logic_error("a face of an interface has no other side");
+        if (best == nullptr)
+          return {};
+        double sum = 0.;
+        for (double &coordinate : best_place)
+          sum += coordinate = std::max(coordinate, 0.);
+        for (double &coordinate : best_place)
+          coordinate /= sum;
+        return {best, best_place};
       }
 
       /// r with the traction that bonds bear, as far as the foundation lets the
@@ -748,8 +755,12 @@ namespace Debond
       std::vector<DoneCell> cells;
       std::vector<Stress>   stresses; ///< see stress_at()
 
-      /// Contact faces on interfaces by place_on_line() of their middles.
-      std::multimap<double, unsigned int> of_interfaces;
+      /// Contact faces on interfaces by the boxes around them.
+      dealii::RTree<std::pair<dealii::BoundingBox<dim>, unsigned int>>
+        of_interfaces;
+
+      /// So many boxes of triangles may contain a point.
+      static constexpr unsigned int n_nearest = 12;
 
       /// The first contact face of each cell that has any.
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>

@@ -51,7 +51,8 @@ namespace Debond
                 for (const auto &[other, weight] : row->others)
                   if (const auto held = of_node.find(other);
                       held != of_node.end())
-                    result.reactions[names[held->second]] -= weight * force;
+                    result.reactions[names[held->second]] -=
+                      weight * force * row->of_others;
               }
           result.reactions[names[support]] += force;
         }

@@ -91,5 +91,22 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<Facet<dim>>
+  facets_of(const std::vector<BoundaryFace<dim>> &faces)
+  {
+    std::vector<Facet<dim>> facets(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      {
+        std::copy_n(faces[f].indices.begin(), dim, facets[f].vertices.begin());
+        std::copy_n(faces[f].positions.begin(), dim, facets[f].corners.begin());
+        facets[f].normal = faces[f].normal;
+      }
+    return facets;
+  }
+
+
+
   DEBOND_INSTANTIATE(boundary_faces);
+  DEBOND_INSTANTIATE(facets_of);
 } // namespace Debond

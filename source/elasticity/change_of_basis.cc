@@ -93,6 +93,8 @@ namespace Debond
                   dealii::Tensor<1, dim> nodal;
                   for (unsigned int d = 0; d < dim; ++d)
                     nodal[d] = entry(i + d);
+                  const dealii::Tensor<1, dim> on_others =
+                    nodal * row->of_others;
                   for (const auto &[other, weight] : row->others)
                     {
                       const auto k = std::find(cell_dofs.begin(),
@@ -100,7 +102,7 @@ namespace Debond
                                                dim * other) -
                                      cell_dofs.begin();
                       for (unsigned int d = 0; d < dim; ++d)
-                        entry(k + d) += weight * nodal[d];
+                        entry(k + d) += weight * on_others[d];
                     }
                   // A vector times the matrix from the right is the transposed
                   // matrix times the vector, to_nodal' K.
@@ -122,7 +124,12 @@ namespace Debond
     // are as large as |u_first| + 2 |u_second|, whatever cancels in their sum.
     // Frames change sizes by little.
     for (const BasisRow<dim> &row : rows(BasisStep::jumps))
-      set_at(sizes, row.node, at(sizes, row.node) + 2. * others(sizes, row));
+      {
+        auto terms = at(sizes, row.node);
+        for (const auto &[other, weight] : row.others)
+          terms += 2. * std::abs(weight) * at(sizes, other);
+        set_at(sizes, row.node, terms);
+      }
     return sizes;
   }
 
@@ -138,7 +145,7 @@ namespace Debond
       for (const auto &[other, weight] : row.others)
         set_at(rounding,
                other,
-               at(rounding, other) + weight * at(rounding, row.node));
+               at(rounding, other) + std::abs(weight) * at(rounding, row.node));
     return rounding;
   }
 

@@ -74,7 +74,8 @@ namespace Debond
       const auto at = [&](const unsigned int k) {
         return gap_value(supports, face.id, face.positions[k]);
       };
-      return node < dim ? at(node) : edge_coefficient<dim>(node, at);
+      return face.gaps[node] +
+             (node < dim ? at(node) : edge_coefficient<dim>(node, at));
     }
 
 
@@ -147,13 +148,6 @@ namespace Debond
 
 
     constexpr unsigned int no_node = dealii::numbers::invalid_unsigned_int;
-
-    /// The cosine to a normal up to which a direction counts as along the
-    /// boundary: planes of symmetry meet the mean normal of a polygon at up to
-    /// half of its largest angle (VertexNormals).
-    constexpr double most_inclined = 0.28;
-
-
 
     /// Goes from the faces to their vertices, from these to contact nodes, and
     /// with the nodes back to the faces.
@@ -247,7 +241,14 @@ namespace Debond
               // to afterwards. One fixed face is enough to fix the tangential
               // displacement of a vertex, as u is continuous.
               ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
-              vertex.position            = faces[f].positions[v];
+              // A vertex that has the jump of another one is not there, whose
+              // faces have one normal.
+              if (faces[f].gaps[v] == infinity)
+                {
+                  places[f][v] = 0;
+                  continue;
+                }
+              vertex.position = faces[f].positions[v];
               places[f][v] = static_cast<unsigned int>(vertex.normals.size());
               vertex.normals.push_back(faces[f].normal);
               vertex.measures.push_back(faces[f].measure);

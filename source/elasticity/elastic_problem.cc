@@ -55,7 +55,7 @@ namespace Debond
           if (cell_dofs.size() > n_own && cell->is_locally_owned())
             glued.push_back(nodes);
         }
-      if (!unknowns.pairs().empty())
+      if (unknowns.has_interfaces())
         {
           // Every rank takes part in this exchange if there is a pair anywhere,
           // as all of them know all pairs. It adds what it has not seen, and
@@ -415,7 +415,7 @@ namespace Debond
                                                    cell_matrix.n_elements()));
         add_rows(0, n);
       }
-    if (elastic_unknowns.pairs().empty())
+    if (!elastic_unknowns.has_interfaces())
       return;
     for (const auto &of_rank :
          dealii::Utilities::MPI::all_gather(elastic_unknowns.communicator(),

@@ -2,13 +2,13 @@
 #include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/node_pairs.h>
-#include <debond/mesh/field_value.h>
 
 namespace Debond
 {
   template <int dim>
-  NodePairs<dim>::NodePairs(const std::vector<BoundaryFace<dim>> &high,
-                            const std::vector<BoundaryFace<dim>> &low)
+  bool
+  NodePairs<dim>::add(const std::vector<BoundaryFace<dim>> &high,
+                      const std::vector<BoundaryFace<dim>> &low)
   {
     // Nodes of both sides are paired by their places. Those of the low side are
     // sorted by one number, their place along a line, and each node of the high
@@ -17,7 +17,8 @@ namespace Debond
     // few nodes have the same number.
     using Node = std::pair<unsigned int, dealii::Point<dim>>;
     std::multimap<double, Node> by_place;
-    std::set<unsigned int>      of_low, of_high;
+    std::set<unsigned int>      of_low, of_high, common;
+    std::vector<Pair>           added;
     for (const BoundaryFace<dim> &face : low)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
         if (of_low.insert(face.indices[n]).second)
@@ -30,7 +31,7 @@ namespace Debond
           // A node that both sides have in common is an end of the interface,
           // and has no jump.
           if (of_low.count(node) > 0)
-            shared.insert(node);
+            common.insert(node);
           else if (of_high.insert(node).second)
             {
               // Places count as the same relative to the length of an edge of
@@ -50,15 +51,17 @@ namespace Debond
                                       near;
                              });
               if (other == end)
-                throw std::invalid_argument(
-                  "the meshes on the two sides of an interface do not match "
-                  "at " +
-                  point_text(point));
+                return false;
               // The first node is the one on the high side at first, with the
               // sign 1; glue() may exchange them.
-              pairs.push_back({node, other->second.first, 1.});
+              added.push_back({node, other->second.first, 1.});
             }
         }
+    if (of_high.size() + common.size() != of_low.size())
+      return false;
+    pairs.insert(pairs.end(), added.begin(), added.end());
+    shared.insert(common.begin(), common.end());
+    return true;
   }
 
 

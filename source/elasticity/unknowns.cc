@@ -6,6 +6,7 @@
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/edge_coefficients.h>
+#include <debond/elasticity/mortar.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
@@ -132,11 +133,9 @@ namespace Debond
     change_of_basis.set(BasisStep::coefficients,
                         edge_coefficients(with_coefficients),
                         n_nodes);
-    node_pairs = NodePairs<dim>(faces(conditions.high_sides), low);
 
-    // The order matters: prescribe() reads the coefficients, and glue() may
-    // exchange the nodes of a pair, so that faces and jumps take the first
-    // nodes from it afterwards.
+    // The order matters: prescribe() reads the coefficients, and jumps need to
+    // know which nodes are held.
     NodeSupports<dim> node_supports;
     node_supports.clamp(faces(conditions.clamped), conditions);
     for (const PrescribedDisplacement<dim> &condition : supports.displacements)
@@ -147,20 +146,8 @@ namespace Debond
     if (conditions.symmetry == Symmetry::axis)
       node_supports.hold_axis(node_positions(), diameter_of(triangulation));
     axis_nodes = node_supports.on_axis();
-    node_supports.glue(node_pairs);
+    make_jumps(low, conditions, node_supports, contact);
     names_of_supports = node_supports.names();
-    // The faces of an interface are those of its high side, and its contact
-    // nodes are the first nodes of pairs, whose unknowns are the jumps. If the
-    // first node is on the low side after an exchange, the faces take its
-    // number.
-    std::map<unsigned int, unsigned int> first_of;
-    for (const auto &pair : node_pairs.all())
-      first_of[pair.second] = pair.first;
-    for (BoundaryFace<dim> &face : contact)
-      for (unsigned int n = 0; n < face.n_nodes; ++n)
-        if (const auto entry = first_of.find(face.indices[n]);
-            entry != first_of.end())
-          face.indices[n] = entry->second;
 
     // The normals of the foundation replace those of the faces before these are
     // grouped to nodes. Nodes of the contact boundary are constrained together
@@ -170,9 +157,145 @@ namespace Debond
     contact_space = make_contact_space(
       contact, degree, conditions, supports, node_supports, constrained);
     const std::vector<Support<dim>> held = constrained.finish(node_supports);
-    change_of_basis.set(BasisStep::jumps, node_pairs.jumps(), n_nodes);
     change_of_basis.set(BasisStep::frames, constrained.frames(), n_nodes);
     find_free_motions(held);
+    check_neighbours(conditions);
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::make_jumps(const std::vector<BoundaryFace<dim>> &low,
+                                   const BoundaryConditions &conditions,
+                                   NodeSupports<dim>        &node_supports,
+                                   std::vector<BoundaryFace<dim>> &contact)
+  {
+    // Where the nodes of both sides are at the same places one depends on one,
+    // otherwise on several. glue() may exchange the nodes of a pair, so that
+    // jumps are made afterwards.
+    const auto with_ids = [](const std::vector<BoundaryFace<dim>> &faces,
+                             const auto                           &ids) {
+      std::vector<BoundaryFace<dim>> result;
+      for (const BoundaryFace<dim> &face : faces)
+        if (ids.count(face.id) > 0)
+          result.push_back(face);
+      return result;
+    };
+    std::vector<MortarInterface<dim>>                  mortars;
+    std::map<dealii::types::boundary_id, unsigned int> mortar_of;
+    for (const auto &[name, high_ids, low_ids] : conditions.interfaces)
+      {
+        const auto high     = with_ids(contact, high_ids),
+                   low_side = with_ids(low, low_ids);
+        if (node_pairs.add(high, low_side))
+          continue;
+        for (const auto id : high_ids)
+          mortar_of.emplace(id, static_cast<unsigned int>(mortars.size()));
+        mortars.emplace_back(name, high, low_side, node_supports, conditions);
+      }
+    node_supports.glue(node_pairs);
+    std::vector<BasisRow<dim>> rows = node_pairs.jumps();
+    for (const MortarInterface<dim> &mortar : mortars)
+      rows.insert(rows.end(), mortar.rows().begin(), mortar.rows().end());
+
+    // A node is one of a jump, or others depend on it: of two jumps at one node
+    // none would be an unknown of its own.
+    std::map<unsigned int, unsigned int> uses;
+    for (const BasisRow<dim> &row : rows)
+      uses[row.node] += 2;
+    for (const BasisRow<dim> &row : rows)
+      for (const auto &[other, unused] : row.others)
+        if (const auto at = uses.find(other); at != uses.end())
+          ++at->second;
+    const auto check = [&uses](const std::vector<BoundaryFace<dim>> &side) {
+      for (const BoundaryFace<dim> &face : side)
+        for (unsigned int n = 0; n < face.n_nodes; ++n)
+          if (const auto at = uses.find(face.indices[n]);
+              at != uses.end() && at->second > 2)
+            throw EntryError(
+              "Mesh/Interfaces",
+              "more than two bodies meet in the point " +
+                point_text(face.positions[n]) +
+                ": let interfaces end before others, or name the side there "
+                "last in both of them");
+    };
+    check(contact);
+    check(low);
+    change_of_basis.set(BasisStep::jumps, rows, n_dofs() / dim);
+
+    // The faces of an interface are those of its high side, and its contact
+    // nodes are those of the rows, whose unknowns are the jumps. If supports
+    // have made the node on the low side the first one of a pair, the faces
+    // take its number.
+    std::map<unsigned int, unsigned int> first_of;
+    for (const auto &pair : node_pairs.all())
+      first_of[pair.second] = pair.first;
+    for (BoundaryFace<dim> &face : contact)
+      if (const auto mortar = mortar_of.find(face.id);
+          mortar != mortar_of.end())
+        mortars[mortar->second].set_jumps(face);
+      else
+        for (unsigned int n = 0; n < face.n_nodes; ++n)
+          if (const auto entry = first_of.find(face.indices[n]);
+              entry != first_of.end())
+            face.indices[n] = entry->second;
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::check_neighbours(
+    const BoundaryConditions &conditions) const
+  {
+    if (n_bodies() == 1)
+      return;
+    // Faces of one body only meet at cracks. Those of interfaces are looked at
+    // by their own.
+    std::set<dealii::types::boundary_id> own_ids;
+    for (const auto &cell : owned_cells(dofs))
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary() &&
+            conditions.high_sides.count(face->boundary_id()) == 0 &&
+            conditions.low_sides.count(face->boundary_id()) == 0)
+          own_ids.insert(face->boundary_id());
+    const auto all_ids = union_of_ranks<dealii::types::boundary_id>(
+      {own_ids.begin(), own_ids.end()}, communicator());
+    if (all_ids.empty())
+      return;
+    const std::set<dealii::types::boundary_id> ids(all_ids.begin(),
+                                                   all_ids.end());
+    const std::vector<BoundaryFace<dim>>       faces =
+      boundary_faces(dofs, ids, conditions.names);
+    const std::vector<Facet<dim>> facets = apart(facets_of(faces));
+    for (const Overlap<dim> &overlap : find_overlaps(facets, facets, 1.))
+      {
+        const BoundaryFace<dim> &face  = faces[overlap.first],
+                                &other = faces[overlap.second];
+        if (body_of(face.indices[0]) == body_of(other.indices[0]))
+          continue;
+        const std::string name   = boundary_name(conditions.names, face.id),
+                          beside = boundary_name(conditions.names, other.id);
+        const std::string at     = " at " + point_text(face.positions[0]) + ' ';
+        if (conditions.contact.count(face.id) > 0)
+          throw EntryError("Boundary conditions/Contact boundary",
+                           name + at + "is next to " + beside +
+                             " of another body, and contact with it is that "
+                             "with a rigid foundation: Mesh/Interfaces lets "
+                             "both sides touch each other, and so does "
+                             "Mesh/Cuts where they are one mesh");
+        for (const auto &point : overlap.points)
+          if (std::abs(point.distance) <=
+              Tolerance::touching *
+                face.positions[0].distance(face.positions[1]))
+            throw EntryError("Mesh/Interfaces",
+                             name + at + "lies on " + beside +
+                               " of another body, which it could go through: "
+                               "name the two boundaries, or the two regions, "
+                               "here. If they are one body, Coherence Mesh in "
+                               "Gmsh joins nodes at the same place");
+      }
   }
 
 
@@ -190,9 +313,11 @@ namespace Debond
     const std::vector<std::string> places  = find_bodies();
     const auto                     in_body = [this](Support<dim> &support) {
       support.body = body_of(support.node);
-      // At a first node the prescribed displacement is the jump, relative to
-      // the body of the second node.
-      if (const auto *row = basis().find(BasisStep::jumps, support.node))
+      // At a node with a jump the prescribed displacement is the jump, relative
+      // to the body of the other nodes, unless it is held by itself.
+      const auto *row = basis().find(BasisStep::jumps, support.node);
+      if (row != nullptr &&
+          (support.direction * row->of_others).norm() > Tolerance::same_normal)
         support.other = body_of(row->others[0].first);
     };
     std::for_each(held.begin(), held.end(), in_body);
@@ -226,7 +351,11 @@ namespace Debond
     if (!motions.empty())
       throw std::invalid_argument(
         "Boundary conditions leave a rigid motion free: " +
-        join(motions, ", ") + ". Clamp a side.");
+        join(motions, ", ") + ". Clamp a side" +
+        (n_bodies() == 1 ?
+           "." :
+           "; nodes at the same place do not connect bodies, but "
+           "Mesh/Interfaces does or, where they are one mesh, Mesh/Cuts."));
   }
 
 
@@ -235,31 +364,45 @@ namespace Debond
   std::vector<std::string>
   ElasticUnknowns<dim>::find_bodies()
   {
-    if (node_pairs.empty())
-      return {""};
-    // Bodies are connected components of nodes that have cells in common. Each
-    // node gets the least number among those it is joined to, by passes over
-    // the own cells until nothing changes; after each pass ranks take the
-    // minimum for nodes that they share. All ranks see the same numbers then,
-    // so that they stop at the same pass.
+    // Bodies are connected components of nodes that have cells in common. A
+    // node leads to one with a lower number in its body, so that one pass over
+    // the own cells joins all that they connect. Then ranks take the least
+    // number for nodes that they share, until nothing changes; all ranks see
+    // the same numbers, so that they stop at the same time.
     bodies.resize(n_dofs() / dim);
     std::iota(bodies.begin(), bodies.end(), 0u);
-    std::vector<unsigned int>                    before;
+    const auto first_of = [this](unsigned int node) {
+      while (bodies[node] != node)
+        node = bodies[node] = bodies[bodies[node]];
+      return node;
+    };
+    const auto join_nodes = [&](const unsigned int a, const unsigned int b) {
+      const auto [low, high] = std::minmax({first_of(a), first_of(b)});
+      bodies[high]           = low;
+    };
     std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
-    while (before != bodies)
+    for (const auto &cell : owned_cells(dofs))
       {
-        before = bodies;
-        for (const auto &cell : owned_cells(dofs))
-          {
-            cell->get_dof_indices(cell_dofs);
-            unsigned int least = bodies[cell_dofs[0] / dim];
-            for (const auto dof : cell_dofs)
-              least = std::min(least, bodies[dof / dim]);
-            for (const auto dof : cell_dofs)
-              bodies[dof / dim] = least;
-          }
-        dealii::Utilities::MPI::min(bodies, communicator(), bodies);
+        cell->get_dof_indices(cell_dofs);
+        for (const auto dof : cell_dofs)
+          join_nodes(static_cast<unsigned int>(cell_dofs[0] / dim),
+                     static_cast<unsigned int>(dof / dim));
       }
+    const auto lead_to_first = [&]() {
+      for (unsigned int node = 0; node < bodies.size(); ++node)
+        bodies[node] = first_of(node);
+    };
+    std::vector<unsigned int> least, before;
+    do
+      {
+        lead_to_first();
+        before = std::exchange(least, bodies);
+        dealii::Utilities::MPI::min(least, communicator(), least);
+        for (unsigned int node = 0; node < bodies.size(); ++node)
+          join_nodes(node, least[node]);
+      }
+    while (least != before);
+    lead_to_first();
     const std::vector<dealii::Point<dim>> positions = node_positions();
     std::map<unsigned int, unsigned int>  numbers;
     std::vector<std::string>              places;

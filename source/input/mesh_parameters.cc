@@ -109,6 +109,11 @@ namespace Debond
       "Surfaces along which the body is cut into several: 'y = 2' is a line of the mesh (before the Rotation), 'y = 2 && x < 60' a part of it, and 'core | ring' is where these regions of a File meet, 'fault' a group of curves (in 3D of surfaces) inside it; more of them after commas. Their names are cut_1, cut_2, ..., those of their sides cut_1_low, cut_1_high, ..., at a group also fault, fault_low, fault_high; as a Contact boundary cut_1 glues the bodies to each other",
       "length");
     table.bind(
+      "Mesh/Interfaces",
+      body.interfaces,
+      Pattern("a text"),
+      "Where bodies of a File meet that have no nodes in common: 'a | b' are two boundaries, or two regions whose sides lie on each other; more of them after commas. Their meshes need not match. The nodes of the first side carry the jumps; it has to be covered by the other one and is best the finer one. Their names are interface_1, interface_2, ..., or NAME for 'NAME: a | b', and those of their sides NAME_high (the first one) and NAME_low; as a Contact boundary NAME glues the bodies to each other. Sides apart have the distance in the mesh as their gap");
+    table.bind(
       "Mesh/File",
       body.file,
       Pattern("a text"),
@@ -262,6 +267,49 @@ namespace Debond
 
 
 
+    /// Throws std::invalid_argument if the text is no interface of this body.
+    /// @p number: in the order of all.
+    Interface
+    make_interface(const BodyDescription &body,
+                   const std::string     &text,
+                   const std::size_t      number)
+    {
+      const std::size_t              colon = text.find(':');
+      const std::vector<std::string> sides =
+        dealii::Utilities::split_string_list(
+          colon == std::string::npos ? text : text.substr(colon + 1), '|');
+      if (sides.size() != 2)
+        throw std::invalid_argument(
+          text + " is not two sides, as plate | foot or NAME: plate | foot");
+      const std::set<std::string> boundaries = body.boundaries(),
+                                  regions    = body.regions();
+      for (const std::string &side : sides)
+        if (boundaries.count(side) == 0 && regions.count(side) == 0)
+          {
+            std::set<std::string> known = boundaries;
+            known.insert(regions.begin(), regions.end());
+            throw std::invalid_argument(
+              "the body has no boundary or region " + side + ", but " +
+              join({known.begin(), known.end()}, ", "));
+          }
+      Interface interface {
+        colon == std::string::npos ?
+          "interface_" + std::to_string(number) :
+          dealii::Utilities::trim(text.substr(0, colon)),
+          sides[0], sides[1]
+      };
+      for (const char *ending : {"", "_high", "_low"})
+        if (boundaries.count(interface.name + ending) > 0)
+          throw std::invalid_argument("the body has a boundary " +
+                                      interface.name + ending +
+                                      ": give the interface another name, as "
+                                      "in NAME: " +
+                                      join(sides, " | "));
+      return interface;
+    }
+
+
+
     /// Throws std::invalid_argument if the text is no part of this body.
     template <int dim>
     Part<dim>
@@ -305,7 +353,8 @@ namespace Debond
 
 
 
-    /// The body with its cuts and parts; its own errors belong to the @p entry.
+    /// The body with its cuts, parts and interfaces; its own errors belong to
+    /// the @p entry.
     template <int dim>
     std::shared_ptr<BodyDescription>
     make_body_with_pieces(const BodyParameters                     &parameters,
@@ -356,6 +405,12 @@ namespace Debond
           made.push_back(make_part(*body, part.first, part.second, constants));
         });
       body->parts = made;
+      attempt("Mesh/Interfaces", {"Dimension"}, [&]() {
+        for (const std::string &text :
+             dealii::Utilities::split_string_list(parameters.interfaces, ','))
+          body->interfaces.push_back(
+            make_interface(*body, text, body->interfaces.size() + 1));
+      });
       return body;
     }
   } // namespace
@@ -424,7 +479,8 @@ namespace Debond
       idle("Mesh/Generator, Mesh/Arguments",
            "this belongs to Source = generator");
     if (source == Source::box)
-      idle("Mesh/Refinements", "a box has its Cells");
+      idle("Mesh/Refinements, Mesh/Interfaces",
+           "a box has its Cells, and is one body");
     return dimension == 2 ? make_body_with_pieces<2>(
                               parameters, parts, constants, entry, table) :
                             make_body_with_pieces<3>(

@@ -3,6 +3,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/mesh/cell_search.h>
 #include <debond/mesh/cuts.h>
+#include <debond/mesh/interfaces.h>
 #include <debond/mesh/parts.h>
 
 namespace Debond
@@ -37,6 +38,9 @@ namespace Debond
     for (const Cut<dim> &cut : cuts)
       for (const std::string &name : cut.names())
         names.insert({name, name + "_low", name + "_high"});
+    for (const Interface &interface : interfaces)
+      names.insert(
+        {interface.name, interface.name + "_low", interface.name + "_high"});
     for (const Part<dim> &part : parts)
       if (!part.boundary.empty())
         names.insert(part.name);
@@ -64,9 +68,9 @@ namespace Debond
   PieceNames
   Body<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
-    // The cuts come before the parts, so that a part may be a piece of an
-    // interface. Both change the ids in the mesh and the names that stand for
-    // them.
+    // The cuts come before the parts, so that a part may be a piece of a cut,
+    // and the interfaces after them, so that a part may be a side. All of them
+    // change the ids in the mesh and the names that stand for them.
     make_whole_mesh(mesh);
     PieceNames names = whole_names();
     if (!cuts.empty())
@@ -79,7 +83,10 @@ namespace Debond
       names.notes.push_back(names.note_on_twins);
     names.inner_groups.clear();
     names.n_twins = 0;
-    return parts.empty() ? names : name_parts(parts, names, mesh);
+    if (!parts.empty())
+      names = name_parts(parts, names, mesh);
+    return interfaces.empty() ? names :
+                                name_interfaces(interfaces, names, mesh);
   }
 
 
@@ -92,7 +99,7 @@ namespace Debond
     // mesh has been made, and then an EntryError says that it has none. The
     // mesh of the coarser body has about a 2^dim-th of the cells, so that this
     // costs little.
-    if (!cuts.empty())
+    if (has_interfaces())
       return nullptr;
     std::unique_ptr<Body> body = coarser_whole();
     if (!body || parts.empty())
@@ -116,7 +123,7 @@ namespace Debond
   std::unique_ptr<Body<dim>>
   Body<dim>::coarser_level() const
   {
-    return !cuts.empty() || n_vertices() < fewest_vertices_of_level ?
+    return has_interfaces() || n_vertices() < fewest_vertices_of_level ?
              nullptr :
              coarser_whole();
   }

@@ -266,7 +266,7 @@ namespace Debond
     // Parts and cuts are found on the whole mesh, and then a box is made by the
     // first rank as other bodies are.
     const auto *box = dynamic_cast<const Box<dim> *>(&body);
-    if (box != nullptr && box->parts.empty() && box->cuts.empty() &&
+    if (box != nullptr && box->parts.empty() && !box->has_interfaces() &&
         box->parameters.cells[direction_of_layers<dim>(box->parameters)] >=
           n_ranks)
       {

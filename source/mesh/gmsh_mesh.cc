@@ -46,8 +46,8 @@ namespace Debond
         cut_cells();
         take_faces();
         take_groups();
+        find_bodies();
         check_hanging_nodes();
-        check_connection();
       }
 
       std::unique_ptr<SourceMesh<dim>>
@@ -482,9 +482,10 @@ namespace Debond
               }
       }
 
-      /// Checks that one comes from every cell to every other through faces.
+      /// Finds the bodies, and checks that what is connected by vertices is so
+      /// through faces: bodies with less in common would turn about it.
       void
-      check_connection() const
+      find_bodies()
       {
         // The connected sets are kept as trees of cells whose paths are halved
         // at each search, so that the time is nearly proportional to the number
@@ -498,15 +499,23 @@ namespace Debond
         };
         for (const auto &[a, b] : neighbours)
           root[find(a)] = find(b);
-        for (std::size_t c = 0; c < root.size(); ++c)
-          if (find(c) != find(0))
-            fail("the mesh is of two bodies or more: " + element(c) +
-                 " is not connected through faces with " + element(0) +
-                 (n_twins == 0 ?
-                    "; bodies that touch or are glued to each other are one "
-                    "mesh with Mesh/Cuts, and the gap between them is Contact "
-                    "law/Initial gap" :
-                    words("; there are ", n_twins, " nodes", on_one_place)));
+        body_of.assign(vertices.size(), cells.size());
+        std::vector<std::size_t> cell_at(vertices.size());
+        for (const Simplex &simplex : simplices)
+          for (const unsigned int v : simplex.corners)
+            if (body_of[v] == cells.size())
+              {
+                body_of[v] = find(simplex.cell);
+                cell_at[v] = simplex.cell;
+              }
+            else if (body_of[v] != find(simplex.cell))
+              {
+                std::ostringstream place;
+                place << vertices[v];
+                fail(element(simplex.cell) + " hangs together with " +
+                     element(cell_at[v]) + " by less than a face, at (" +
+                     place.str() + ")");
+              }
       }
 
       /// Normal to what these points span, as long as it is large.
@@ -520,8 +529,8 @@ namespace Debond
                                           points[2] - points[0]);
       }
 
-      /// Checks that no vertex lies on a face of the boundary. Two vertices at
-      /// one place are no hanging node, but a crack.
+      /// Checks that no vertex lies on a face of its body's boundary. Two
+      /// vertices at one place are no hanging node, but a crack.
       void
       check_hanging_nodes()
       {
@@ -558,7 +567,8 @@ namespace Debond
             for (const std::size_t i : near)
               {
                 if (std::find(face.begin(), face.end(), candidates[i]) !=
-                    face.end())
+                      face.end() ||
+                    body_of[candidates[i]] != body_of[face[0]])
                   continue;
                 // The length of the normal is the length or twice the area of
                 // the face. A point is on the face if its distance from the
@@ -575,9 +585,8 @@ namespace Debond
                     least = std::min(least, places[i].distance(corners[v]));
                     sum += normal(with_it).norm();
                   }
-                // A vertex at a corner's place is a crack, or bodies that were
-                // not joined. It is no error by itself and is counted for a
-                // note.
+                // A vertex at a corner's place is a crack, or was not joined.
+                // It is no error by itself and is counted for a note.
                 if (least <= near_by)
                   twins.insert(candidates[i]);
                 else if (std::abs(n * (places[i] - corners[0])) <=
@@ -609,8 +618,8 @@ namespace Debond
       /// Nodes at the place of another one: cracks, or forgotten.
       static constexpr const char *on_one_place =
         " at the same place as others, which "
-        "are not connected with them; Coherence Mesh in Gmsh joins them. Bodies "
-        "that are glued to each other are one mesh with Mesh/Cuts";
+        "are not connected with them; Coherence Mesh in Gmsh joins them, "
+        "Mesh/Interfaces lets the sides of a crack touch each other";
 
       const std::string               file_name;
       bool                            is_of_higher_order = false;
@@ -626,6 +635,7 @@ namespace Debond
       std::vector<Simplex> simplices;
       std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
       std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
+      std::vector<std::size_t>                         body_of; ///< by vertex
       std::vector<FaceKey>                             inside;
       std::map<Corners, Element> outer_faces, ///< in groups, by sorted
         inner_faces;                          ///< corners

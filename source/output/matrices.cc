@@ -164,15 +164,22 @@ namespace Debond
             if (basis.find(step, i / dim) == nullptr)
               entries.emplace_back(i, i, 1.);
           for (const BasisRow<dim> &row : basis.rows(step))
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int j = 0; j < dim; ++j)
-                {
-                  const unsigned int at    = dim * row.node + i;
-                  const double       entry = row.to_unknowns[i][j];
-                  entries.emplace_back(at, dim * row.node + j, entry);
-                  for (const auto &[other, weight] : row.others)
-                    entries.emplace_back(at, dim * other + j, -weight * entry);
-                }
+            {
+              const dealii::Tensor<2, dim> from_others =
+                row.to_unknowns * row.of_others;
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  {
+                    const unsigned int at = dim * row.node + i;
+                    entries.emplace_back(at,
+                                         dim * row.node + j,
+                                         row.to_unknowns[i][j]);
+                    for (const auto &[other, weight] : row.others)
+                      entries.emplace_back(at,
+                                           dim * other + j,
+                                           -weight * from_others[i][j]);
+                  }
+            }
           Matrix of_step(n, n);
           of_step.setFromTriplets(entries.begin(), entries.end());
           F = Matrix(of_step * F);

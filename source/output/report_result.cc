@@ -737,7 +737,7 @@ namespace Debond
     report_state(result.verification, result.largest, record);
     report_probes(result, record);
     report_verification(scene.parameters(),
-                        !scene.problem().unknowns().pairs().empty(),
+                        scene.problem().unknowns().has_interfaces(),
                         result,
                         record);
   }

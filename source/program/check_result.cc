@@ -278,7 +278,7 @@ namespace Debond
                result.notes);
       append(sliding_notes(result.bonds(),
                            result.verification,
-                           !scene.body().cuts.empty(),
+                           scene.body().has_interfaces(),
                            scene.supports().normals.empty() &&
                              is_curved(scene.contact_boundary())),
              result.notes);

@@ -64,7 +64,8 @@ difference(DofVector a, const DofVector &b)
 
 
 /// Node 2 is in the middle between 0 and 1, node 3 is glued to 6, node 5, in
-/// the middle between 3 and 4, to 7; the nodes 0, 3, 5 and 6 have frames.
+/// the middle between 3 and 4, to 7; the nodes 0, 3, 5 and 6 have frames. Of
+/// the displacement of 6 node 3 has some components alone.
 template <int dim>
 void
 test()
@@ -77,9 +78,10 @@ test()
             {scaled(2, 0.5, {{0, 0.25}, {1, 0.25}}),
              scaled(5, 0.5, {{3, 0.25}, {4, 0.25}})},
             n_nodes);
-  basis.set(BasisStep::jumps,
-            {scaled(3, 1., {{6, 1.}}), scaled(5, -1., {{7, 1.}})},
-            n_nodes);
+  BasisRow<dim>        glued = scaled(3, 1., {{6, 1.}});
+  const Tensor<2, dim> part  = random_frame<dim>();
+  glued.of_others            = part;
+  basis.set(BasisStep::jumps, {glued, scaled(5, -1., {{7, 1.}})}, n_nodes);
   std::vector<BasisRow<dim>> frames;
   for (const unsigned int node : {0, 3, 5, 6})
     {
@@ -103,7 +105,7 @@ test()
         (at(u, 5) - (0.5 * coefficient + 0.25 * (at(u, 3) + at(u, 4)))).norm(),
         rounding);
   check("a jump along a frame",
-        (at(u, 3) - at(u, 6) - frames[1].to_nodal * at(x, 3)).norm(),
+        (at(u, 3) - part * at(u, 6) - frames[1].to_nodal * at(x, 3)).norm(),
         rounding);
   check("a node without rows", (at(u, 4) - at(x, 4)).norm(), 0.);
   const DofVector coefficients = basis.to_nodal(x, BasisStep::jumps);

@@ -52,6 +52,19 @@ Physical Curve("left") = {4};
 Physical Curve("fault") = {5};
 """
 
+STRIPS = """SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 0.4, 0.02};
+Rectangle(2) = {0, 0.02, 0, 0.4, 0.02};
+Physical Surface("lower") = {1};
+Physical Surface("upper") = {2};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2, 6};
+Physical Curve("top") = {7};
+Physical Curve("left") = {4, 8};
+MeshSize{ PointsOf{ Surface{1}; } } = 0.013;
+MeshSize{ PointsOf{ Surface{2}; } } = 0.01;
+"""
+
 # Of each a name, a scene and what differs in it.
 SCENES = [
     ("plane", "benchmark-40x4", MM),
@@ -67,6 +80,12 @@ SCENES = [
     ("a group that is cut along, refined", "benchmark-40x4",
      MM + ["Mesh/Source=file", "Mesh/File=fault.geo", "Mesh/Cuts=fault",
            "Boundary conditions/Contact boundary=bottom, fault",
+           "Accuracy/Maximum unknowns=2000"]),
+    ("meshes that do not match, refined", "benchmark-40x4",
+     MM + ["Mesh/Source=file", "Mesh/File=strips.geo", "Mesh/Interfaces=upper | lower",
+           "Boundary conditions/Contact boundary=interface_1", "Loads/Traction top=0; 1e-4",
+           "Contact law/Tangential displacement=bonded",
+           "Contact law/Bond shear stiffness=0.4",
            "Accuracy/Maximum unknowns=2000"]),
     ("joint, refined", "benchmark-40x4",
      MM + JOINT + ["Mesh/Cells=10, 4", "Accuracy/Maximum unknowns=2000"]),
@@ -339,6 +358,8 @@ with tempfile.TemporaryDirectory() as directory:
         file.write(msh.triangles())
     with open(directory + "/fault.geo", "w") as file:
         file.write(FAULT)
+    with open(directory + "/strips.geo", "w") as file:
+        file.write(STRIPS)
     check_ends(directory)
     check_start(directory)
     check_scenes(directory)

@@ -61,6 +61,17 @@ namespace Debond
     /// for beside the vertex.
     constexpr double beside_vertex = 1e-3;
 
+    /// Sides of two bodies that touch each other: facets of a curve are off it
+    /// by this part of their length where they turn by 45 degrees.
+    constexpr double touching = 0.1;
+
+    /// The part of a face that the other side of an interface has to cover:
+    /// normals of facets let a little go past the end of a curved side.
+    constexpr double covered = 0.9;
+
+    /// Entries of a mortar projection that are zero but for rounding.
+    constexpr double zero_in_projection = 1e-13;
+
     /// Middles of contact sides on a certified one, to its length.
     constexpr double on_side = 1e-9;
 

@@ -41,6 +41,13 @@ namespace Debond
     std::set<dealii::types::boundary_id> low_sides  = {};
     std::set<dealii::types::boundary_id> high_sides = {};
 
+    struct Interface
+    {
+      std::string                          name;
+      std::set<dealii::types::boundary_id> high, low;
+    };
+    std::vector<Interface> interfaces = {};
+
     std::map<dealii::types::boundary_id, TangentialDisplacement>
       own_tangential_displacements = {};
 

@@ -6,6 +6,7 @@
 
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/mesh/bernstein.h>
+#include <debond/mesh/overlap.h>
 
 namespace Debond
 {
@@ -22,6 +23,10 @@ namespace Debond
     std::array<dealii::Point<dim>, maximum> positions;
     double                                  measure;
     dealii::Tensor<1, dim>                  normal; ///< outward unit normal
+
+    /// The distance to the other side of an interface in the mesh; infinity if
+    /// the node has the jump of another one.
+    std::array<double, maximum> gaps = {};
 
     /// This is for Boost's serialisation.
     template <typename Archive>
@@ -42,6 +47,13 @@ namespace Debond
   boundary_faces(const dealii::DoFHandler<dim>              &dofs,
                  const std::set<dealii::types::boundary_id> &boundaries,
                  const BoundaryNames                        &names);
+
+
+
+  /// The faces without their edges.
+  template <int dim>
+  std::vector<Facet<dim>>
+  facets_of(const std::vector<BoundaryFace<dim>> &faces);
 } // namespace Debond
 
 #endif

@@ -26,14 +26,15 @@ namespace Debond
 
 
 
-  /// A node at which a step changes what there is to u = to_nodal x + sum of
-  /// weight u(other). The step leaves the others as they are.
+  /// A node at which a step changes what there is to u = to_nodal x + of_others
+  /// (sum of weight u(other)). The step leaves the others as they are.
   template <int dim>
   struct BasisRow
   {
     unsigned int                                 node;
     dealii::Tensor<2, dim>                       to_nodal, to_unknowns;
     std::vector<std::pair<unsigned int, double>> others = {};
+    dealii::Tensor<2, dim> of_others = dealii::unit_symmetric_tensor<dim>();
 
     /// The row of u = scale x + sum of weight u(other).
     static BasisRow
@@ -115,9 +116,9 @@ namespace Debond
     forces_to_unknowns(Vector f) const
     {
       for_each_row([&f](const BasisRow<dim> &row) {
-        const auto force = at(f, row.node);
+        const auto force = at(f, row.node), on_others = force * row.of_others;
         for (const auto &[other, weight] : row.others)
-          set_at(f, other, at(f, other) + weight * force);
+          set_at(f, other, at(f, other) + weight * on_others);
         set_at(f, row.node, force * row.to_nodal);
       });
       return f;
@@ -131,10 +132,11 @@ namespace Debond
                     const BasisStep first = BasisStep::coefficients) const
     {
       for_each_row_back(first, [&f](const BasisRow<dim> &row) {
-        const auto force = at(f, row.node) * row.to_unknowns;
+        const auto force     = at(f, row.node) * row.to_unknowns;
+        const auto on_others = force * row.of_others;
         set_at(f, row.node, force);
         for (const auto &[other, weight] : row.others)
-          set_at(f, other, at(f, other) - weight * force);
+          set_at(f, other, at(f, other) - weight * on_others);
       });
       return f;
     }
@@ -196,7 +198,7 @@ namespace Debond
         v(dim * node + d) = value[d];
     }
 
-    /// The sum of the multiples of the others.
+    /// What the others add.
     template <typename Vector>
     static auto
     others(const Vector &v, const BasisRow<dim> &row)
@@ -204,7 +206,7 @@ namespace Debond
       decltype(at(v, 0)) sum;
       for (const auto &[other, weight] : row.others)
         sum += weight * at(v, other);
-      return sum;
+      return row.of_others * sum;
     }
 
     template <typename Action>

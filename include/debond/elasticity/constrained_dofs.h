@@ -27,10 +27,10 @@ namespace Debond
   public:
     ConstrainedDofs() = default;
 
-    /// The lifting has room for what @p supports have for @p n_dofs unknowns.
+    /// @p n_dofs: the number of unknowns.
     ConstrainedDofs(const unsigned int n_dofs, const Supports<dim> &supports)
       : prescribed(supports.displacements.empty() ? 0 : n_dofs)
-      , gap(supports.gaps.empty() ? 0 : n_dofs)
+      , gap(n_dofs)
     {}
 
     /// Constrains the node, unless that or a frame of its own is done.

@@ -8,6 +8,13 @@
 
 namespace Debond
 {
+  /// The cosine to a normal up to which a direction counts as along the
+  /// boundary: planes of symmetry meet the mean normal of a polygon at up to
+  /// half of its largest angle (VertexNormals).
+  constexpr double most_inclined = 0.28;
+
+
+
   /**
    * The normals of one vertex of the contact boundary, those of groups of the
    * faces around it. Two faces are joined where their normals differ by less

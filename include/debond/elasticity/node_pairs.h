@@ -43,12 +43,12 @@ namespace Debond
       double       sign;
     };
 
-    NodePairs() = default;
-
-    /// The first nodes are those of @p high. Throws std::invalid_argument if
-    /// the nodes of the sides are not at the same places.
-    NodePairs(const std::vector<BoundaryFace<dim>> &high,
-              const std::vector<BoundaryFace<dim>> &low);
+    /// Adds the pairs of an interface, whose first nodes are those of @p high.
+    /// Returns false, with nothing added, if the nodes of the sides are not at
+    /// the same places.
+    bool
+    add(const std::vector<BoundaryFace<dim>> &high,
+        const std::vector<BoundaryFace<dim>> &low);
 
     bool
     empty() const

@@ -117,6 +117,20 @@ namespace Debond
       return node_pairs;
     }
 
+    /// Returns whether bodies are glued to each other somewhere.
+    bool
+    has_interfaces() const
+    {
+      return !basis().rows(BasisStep::jumps).empty();
+    }
+
+    /// Returns whether the meshes do not match somewhere where they are.
+    bool
+    has_mortars() const
+    {
+      return basis().rows(BasisStep::jumps).size() > node_pairs.all().size();
+    }
+
     /// The number of bodies that have no nodes in common.
     unsigned int
     n_bodies() const
@@ -270,6 +284,19 @@ namespace Debond
     rigid_body_modes() const;
 
   private:
+    /// Glues bodies to each other with their supports; takes contact faces of
+    /// interfaces to the nodes of the jumps. Throws as the constructor does.
+    void
+    make_jumps(const std::vector<BoundaryFace<dim>> &low,
+               const BoundaryConditions             &conditions,
+               NodeSupports<dim>                    &node_supports,
+               std::vector<BoundaryFace<dim>>       &contact);
+
+    /// Throws EntryError if bodies lie on each other that could go through each
+    /// other, or if a contact boundary is next to another body.
+    void
+    check_neighbours(const BoundaryConditions &conditions) const;
+
     /// Finds what supports in these directions leave free. Throws as the
     /// constructor does.
     void

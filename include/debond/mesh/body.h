@@ -93,13 +93,26 @@ namespace Debond
     std::vector<std::string> notes;           ///< unless the body is cut there
   };
 
+  /// Two sides of bodies that have no vertices in common, whose meshes need not
+  /// match. Each is a boundary, or a region: what of its boundary lies on the
+  /// other one.
+  struct Interface
+  {
+    std::string name; ///< of both sides
+    std::string high; ///< whose nodes carry the jumps
+    std::string low;
+  };
+
+
+
   /// The pieces of a mesh that have names.
   struct PieceNames
   {
     BoundaryNames boundaries;
     RegionNames   regions;
 
-    /// The boundaries NAME that are both sides NAME_low and NAME_high of a cut.
+    /// The boundaries NAME that are both sides NAME_low and NAME_high of a cut
+    /// or an interface.
     std::set<std::string> interfaces = {};
 
     /// Notes on the pieces for the user.
@@ -176,11 +189,21 @@ namespace Debond
     /// The body is cut into several here. There are no coarser meshes then.
     std::vector<Cut<dim>> cuts;
 
+    /// Bodies meet here. There are no coarser meshes then, either.
+    std::vector<Interface> interfaces;
+
     std::set<std::string>
     boundaries() const final;
 
     std::set<std::string>
     regions() const final;
+
+    /// Returns whether contact is between bodies somewhere.
+    bool
+    has_interfaces() const
+    {
+      return !cuts.empty() || !interfaces.empty();
+    }
 
     /// The number of triangles or tetrahedra.
     virtual double
@@ -224,7 +247,7 @@ namespace Debond
                   const bool with_own = false) const;
 
   private:
-    /// The pieces of the body without its parts and cuts.
+    /// The pieces of the body without its parts, cuts and interfaces.
     virtual PieceNames
     whole_names() const = 0;
 

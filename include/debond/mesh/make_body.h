@@ -25,6 +25,7 @@ namespace Debond
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box
     std::string   cuts;              ///< "y = 2, core | ring"
+    std::string   interfaces;        ///< "glue: plate | rib_foot, ..."
 
     MeshingOptions meshing; ///< of the file
   };

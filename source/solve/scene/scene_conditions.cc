@@ -124,6 +124,8 @@ namespace Debond
                              (given.law.is_by_stiffness ?
                                 "Bond stiffness " + name + " = 0" :
                                 "a Traction factor that is 0 there"));
+        conditions.interfaces.push_back(
+          {name, boundaries.at(name + "_high"), boundaries.at(name + "_low")});
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }
