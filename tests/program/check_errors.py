@@ -53,10 +53,15 @@ def paths(row):
 
 
 def read_cases(file_name):
-    """Of "each" the entries with a message are added to the others, or replace them."""
+    """Of "each" the entries with a message are added to the others, or replace them. Files
+    beside the scenes are written."""
     cases = []
     for block in re.split(r"^(?=\[)", open(file_name).read(), flags=re.M)[1:]:
         header, *rows = [row for row in block.split("\n") if row and row[0] != "#"]
+        if "." in header:
+            with open(header.strip("[]"), "w") as file:
+                file.write("\n".join(rows) + "\n")
+            continue
         name, each, code = re.fullmatch(r"\[(\w+)\]( each)? ?(\d*)", header).groups()
         scenes = [rows]
         if each:
@@ -104,7 +109,7 @@ def main(debond, file_name):
         n_failures += bool(faults)
         for fault in faults:
             print(f"{case.name}: {fault}")
-    written = {name for name in os.listdir() if not name.endswith(".prm")}
+    written = {name for name in os.listdir() if not name.endswith((".prm", ".geo"))}
     if written - {"output"}:
         print("written:", *written)
         n_failures += 1
