@@ -117,7 +117,7 @@ namespace Debond
       "Mesh/File",
       body.file,
       Pattern("a text"),
-      "A mesh, or a geometry to be meshed, in any format that Gmsh reads: .msh, .unv, .bdf, .geo, .step, .brep and others; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers; Parts name boundaries without a group");
+      "A mesh, or a geometry to be meshed, in any format that Gmsh reads: .msh, .unv, .bdf, .geo, .step, .brep and others; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers; without groups the names of the solids in a .step file are the regions. Parts name boundaries without a group");
     table.bind(
       "Mesh/Scale",
       body.scale,
@@ -274,29 +274,31 @@ namespace Debond
                    const std::string     &text,
                    const std::size_t      number)
     {
-      const std::size_t              colon = text.find(':');
-      const std::vector<std::string> sides =
-        dealii::Utilities::split_string_list(
-          colon == std::string::npos ? text : text.substr(colon + 1), '|');
-      if (sides.size() != 2)
+      const std::set<std::string> boundaries = body.boundaries();
+      std::set<std::string>       known      = body.regions();
+      known.insert(boundaries.begin(), boundaries.end());
+      std::vector<std::string> sides =
+        dealii::Utilities::split_string_list(text, '|');
+      // Parts of other programs have colons in their own names, as bolt:2.
+      std::string       name  = "interface_" + std::to_string(number);
+      const std::size_t colon = sides[0].find(':');
+      if (colon != std::string::npos && known.count(sides[0]) == 0)
+        {
+          name     = dealii::Utilities::trim(sides[0].substr(0, colon));
+          sides[0] = dealii::Utilities::trim(sides[0].substr(colon + 1));
+        }
+      if (sides.size() != 2 || name.empty())
         throw std::invalid_argument(
           text + " is not two sides, as plate | foot or NAME: plate | foot");
-      const std::set<std::string> boundaries = body.boundaries(),
-                                  regions    = body.regions();
       for (const std::string &side : sides)
-        if (boundaries.count(side) == 0 && regions.count(side) == 0)
-          {
-            std::set<std::string> known = boundaries;
-            known.insert(regions.begin(), regions.end());
-            throw std::invalid_argument(
-              "the body has no boundary or region " + side + ", but " +
-              join({known.begin(), known.end()}, ", "));
-          }
+        if (known.count(side) == 0)
+          throw std::invalid_argument(
+            "the body has no boundary or region " + side +
+            (known.empty() ?
+               "" :
+               ", but " + join({known.begin(), known.end()}, ", ")));
       Interface interface {
-        colon == std::string::npos ?
-          "interface_" + std::to_string(number) :
-          dealii::Utilities::trim(text.substr(0, colon)),
-          sides[0], sides[1]
+        name, sides[0], sides[1]
       };
       for (const char *ending : {"", "_high", "_low"})
         if (boundaries.count(interface.name + ending) > 0)

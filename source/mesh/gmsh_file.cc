@@ -23,6 +23,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 namespace boost::serialization
@@ -149,6 +150,45 @@ namespace Debond
     {
       for (const char *option : {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"})
         gmsh::option::setNumber(option, size);
+    }
+
+
+
+    /// Makes physical groups of the names that the parts of a geometry have in
+    /// their file, if it has no groups.
+    void
+    group_by_names(const int dimension, const int dim)
+    {
+      gmsh::vectorpair entities;
+      gmsh::model::getPhysicalGroups(entities, dimension);
+      if (!entities.empty())
+        return;
+      // The label of a solid in a STEP file is "Shapes/ASSEMBLY/PLACE/PART",
+      // with more assemblies or none. Each of these names is a group, so that
+      // copies of a part have its name in common, and one of each place.
+      std::map<std::string, std::vector<int>> groups;
+      std::vector<int>                        without;
+      gmsh::model::getEntities(entities, dimension);
+      for (const auto &[unused, entity] : entities)
+        {
+          std::string              label;
+          std::vector<std::string> names;
+          gmsh::model::getEntityName(dimension, entity, label);
+          boost::split(names, label, boost::is_any_of("/"));
+          for (const std::string &name :
+               std::set<std::string>(names.begin(), names.end()))
+            if (!name.empty() && name != "Shapes")
+              groups[name].push_back(entity);
+          if (label.empty())
+            without.push_back(entity);
+        }
+      // Cells without a group would be left out.
+      if (dimension == dim && !groups.empty())
+        for (const int entity : without)
+          groups[std::to_string(entity)].push_back(entity);
+      for (const auto &[name, of_name] : groups)
+        gmsh::model::setPhysicalName(
+          dimension, gmsh::model::addPhysicalGroup(dimension, of_name), name);
     }
 
 
@@ -287,7 +327,11 @@ namespace Debond
       if (file.is_geometry && options.size > 0.)
         set_size(options.size);
       if (file.is_geometry)
-        gmsh::model::mesh::generate(dim);
+        {
+          for (const int dimension : {dim - 1, dim})
+            group_by_names(dimension, dim);
+          gmsh::model::mesh::generate(dim);
+        }
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
 
       // Cells and their faces are read, from all entities of these two
