@@ -82,7 +82,7 @@ def difference(row, code):
         return "same", ""
     J = summary.get("functional")
     with open(os.path.join(row[9], "parameters.prm")) as file:
-        geometry = not HAS_GMSH_OF_LIST and re.search(r"set File += \S+\.geo$", file.read(),
+        geometry = not HAS_GMSH_OF_LIST and re.search(r"set File += \S+\.(geo|step)$", file.read(),
                                                       re.MULTILINE)
     if old_J and J is not None:
         old_J = float(old_J)
