@@ -255,6 +255,128 @@ def thick_tube(run):
             "published/thick-tube", {"Constants/n": n}).summary["probes"]["inside"][0]
 
 
+@problem("cylinder on a block", "Konter, NAFEMS (2006), benchmark 1, by Hertz", 0.002, 0.01)
+def roller(run):
+    force, R, modulus = 35000., 50., 1. / (0.91 / 70000. + 0.91 / 210000.)
+    for h in 0.4, 0.2, 0.1:
+        half = math.sqrt(4. * force * R / (math.pi * modulus))
+        top, edge = parabola(run("published/roller", {"Constants/h": h, "Constants/g": 1.5 * h}),
+                             half)
+        yield f"largest pressure, cells of {h} mm, MPa", force / (0.5 * math.pi * half), top
+        yield f"half width of contact, cells of {h} mm, mm", half, edge
+
+
+def mode(n, r, material):
+    """In plane strain sigma_rr, sigma_r_theta, u_r and u_theta at the radius r, a column for
+    each of Michell's functions with cos(n theta), n = 0 or 2, the second half of them
+    singular at r = 0."""
+    E, nu = material
+    kappa = 3. - 4. * nu
+    parts = [[1., r**-2], [0., 0.], [(kappa - 1.) * r / 2., -1. / r], [0., 0.]] if n == 0 else [
+        [-2., 0., -4. / r**2, -6. / r**4], [2., 6. * r**2, -2. / r**2, -6. / r**4],
+        [-2. * r, (kappa - 3.) * r**3, (kappa + 1.) / r, 2. / r**3],
+        [2. * r, (kappa + 3.) * r**3, (1. - kappa) / r, 2. / r**3]]
+    return numpy.array(parts) * [[1.], [1.], [(1. + nu) / E], [(1. + nu) / E]]
+
+
+def between_rings(n, radii, inner, outer, rim, k=None):
+    """What mode() has, at the middle one of the radii, on the inner of two rings that slide on
+    each other, or that springs of the stiffness k join: sigma_rr and sigma_r_theta are given
+    at the rim. Without a first radius the inner one is a disc."""
+    a, b, c = radii
+    none = numpy.zeros((4, n + 2))
+    inside, outside = numpy.hstack((mode(n, b, inner), none)), numpy.hstack(
+        (none, mode(n, b, outer)))
+    bore = numpy.hstack((mode(n, a, inner), none))[:2] if a else numpy.eye(
+        2 * n + 4)[n // 2 + 1:n + 2]
+    jump = outer[0] * (outside - inside)[2:]
+    equations = numpy.vstack((
+        numpy.hstack((none, mode(n, c, outer)))[:2], bore, (outside - inside)[:2],
+        jump - outer[0] / k * inside[:2] if k else (jump[0], inside[1])))
+    right = numpy.append(rim, numpy.zeros(len(equations) - 2))
+    return inside @ numpy.linalg.lstsq(equations, right, rcond=None)[0]
+
+
+def parts_around(profile):
+    """The normal traction's mean and what cos(2 theta) has of it, and the part of
+    sin(2 theta) in the shear traction, all from squares."""
+    x, y, normal = (profile[name] for name in ("x", "y", "normal_traction"))
+    shear = profile.get("shear_traction", 0. * x)
+    weight = numpy.sqrt(profile["normal_force"] / profile["normal_force_density"])
+    cosine, sine = (x**2 - y**2) / (x**2 + y**2), 2. * x * y / (x**2 + y**2)
+    part, mean = numpy.polyfit(cosine, normal, 1, w=weight)
+    return mean, part, numpy.sum(weight**2 * sine * shear) / numpy.sum((weight * sine)**2)
+
+
+def farthest(values, stated):
+    """The value that differs most."""
+    return max(values, key=lambda value: abs(value - stated))
+
+
+@problem("ring in a ring", "code_aster V6.03.152, V6.03.167, SSNP152, SSNP167; Michell (1899)",
+         5e-4, 0.012, 0.004, 0.004, 0.01, 0.006)
+def rings(run):
+    radii, material = (0.2, 0.6, 1.), (1e9, 0.2)
+    mean, part = (between_rings(n, radii, material, material, (-q, 0.))
+                  for n, q in ((0, 1e7), (2, 1e6)))
+    for h in 0.03, 0.015, 0.0075:
+        cells, word = {"Constants/h": h, "Constants/g": h / 0.6}, f"cells of {h} m"
+        pressure = run("published/rings", cells).profile
+        yield f"contact pressure, {word}, Pa", 925925.93, parts_around(pressure)[0]
+        yield (f"the same, node that differs most, {word}, Pa", 925925.93,
+               farthest(pressure["normal_traction"], 925925.93))
+        small, large = (run("published/rings", {
+            **cells, "Constants/p": 1e7, "Constants/q": q}) for q in (1e5, 1e6))
+        yield (f"largest displacement of the joint, 1e5 cos(2 theta), {word}, m", -5.5e-3,
+               small.summary["probes"]["right"][0])
+        yield (f"1e6 cos(2 theta), its part of the pressure, {word}, Pa", -part[0],
+               parts_around(large.profile)[1])
+        yield (f"1e6 cos(2 theta), largest pressure, {word}, Pa", -mean[0] - part[0],
+               max(large.profile["normal_traction"]))
+        yield (f"1e6 cos(2 theta), largest displacement of the joint, {word}, m",
+               mean[2] + part[2], large.summary["probes"]["right"][0])
+
+
+@problem("hollow sphere in another one", "code_aster V6.03.173, SSNP173", 5e-4, 0.02)
+def hollow_spheres(run):
+    for h in 1, 0.5, 0.25:
+        profile = run("published/hollow-spheres",
+                      {"Constants/h": h, "Constants/g": 1.5 * h}).profile
+        pressure, area = profile["normal_traction"], (
+            profile["normal_force"] / profile["normal_force_density"])
+        yield (f"contact pressure, cells of {h} mm, MPa", 4.894178,
+               numpy.average(pressure, weights=area))
+        yield (f"the same, node that differs most, cells of {h} mm, MPa", 4.894178,
+               farthest(pressure, 4.894178))
+
+
+@problem("fibre in a matrix", "Goodier (1933), with springs by Michell", 0.002, 0.005, 0.01)
+def fibre(run):
+    radii, inner, outer = (None, 1., 8.), (70000., 0.2), (3000., 0.35)
+    for k, word in (1e6, "stiff bonds"), (3000., "soft bonds"):
+        mean, part = (between_rings(n, radii, inner, outer, rim, k)
+                      for n, rim in ((0, (30., 0.)), (2, (10., -10.))))
+        for h in 0.04, 0.02:
+            found = parts_around(run("published/fibre", {
+                "Constants/k": k, "Constants/h": h, "Constants/g": 1.5 * h,
+                "Constants/G": 20. * h}).profile)
+            for name, stated, value in (
+                    ("mean normal traction", mean[0], -found[0]),
+                    ("cos(2 theta) in it", part[0], -found[1]),
+                    ("sin(2 theta) in the shear", -part[1], found[2])):
+                yield f"{word}, {name}, cells of {h} mm, MPa", stated, value
+
+
+@problem("beam of two tied pieces", "patch test; Timoshenko", 1e-8, 1e-8, 1e-4)
+def tied_beam(run):
+    pulled = run("published/tied-beam", {"Constants/T": 100, "Constants/Q": 0}).profile
+    yield ("normal traction of an inclined side, node that differs most, MPa", -50.,
+           farthest(pulled["normal_traction"], -50.))
+    yield ("shear there, MPa", 50., farthest(pulled["shear_traction"], 50.))
+    yield ("deflection of the end, mm", 10. * 100.**3 / (3. * 70000. * 10.**3 / 12.) + 1.2 *
+           10. * 100. / (35000. * 10.), -run("published/tied-beam").summary["probes"]["end"][1])
+
+
 def pull_off_on_springs(k, w, n):
     """The force that pulls a rigid strip of the half width 1 off a half-plane, to which
     springs of the stiffness k hold it until they have taken w: the springs' integral
