@@ -1,6 +1,6 @@
-// A quarter of two rings, a < r < b and b < r < c, whose meshes do not match: cells of the
-// size h inside and g outside, G at its rim; with a = 0 the inner one is a disc. Of a section with the axis
-// x = 0 they are hollow spheres.
+// A quarter of two rings, a < r < b and b < r < c, whose meshes do not match: cells have the
+// size h inside, g outside and G at the rim; with a = 0 the inner ring is a disc. Around the
+// axis x = 0 they are hollow spheres.
 DefineConstant[ a = 0.2, b = 0.6, c = 1, h = 0.03, g = 0.05, G = g ];
 radii[] = {a, b, b, c};
 sizes[] = {h, h, g, G};
