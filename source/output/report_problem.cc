@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
 
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/version.h>
 #include <debond/output/report.h>
@@ -258,6 +259,18 @@ namespace Debond
                   words(", with fixed tangential ones ", n_dofs_paper) :
                   "");
     report_data(problem, n_nodes, record);
+    // A gap of bodies apart is that of the mesh, which the scene does not say.
+    if (scene.problem().unknowns().has_gap() &&
+        !scene.body().interfaces.empty())
+      {
+        double least = infinity, largest = -infinity;
+        for (const auto &node : scene.contact_boundary().nodes)
+          {
+            least   = std::min(least, node.gap);
+            largest = std::max(largest, node.gap);
+          }
+        record.line("gap", "from ", least, " to ", largest);
+      }
     // No support holds these rigid motions, so that A is singular and the body
     // can detach. Their names tell of a support that was forgotten.
     if (const auto &motions =

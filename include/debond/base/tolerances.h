@@ -61,8 +61,8 @@ namespace Debond
     /// for beside the vertex.
     constexpr double beside_vertex = 1e-3;
 
-    /// Sides of two bodies that touch each other: facets of a curve are off it
-    /// by this part of their length where they turn by 45 degrees.
+    /// Distance of sides that are looked at as lying on each other, to the
+    /// length of an edge: facets that turn by 45 degrees are off a curve by it.
     constexpr double touching = 0.1;
 
     /// The part of a face that the other side of an interface has to cover:
