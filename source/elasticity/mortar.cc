@@ -13,22 +13,6 @@ namespace Debond
 {
   namespace
   {
-    /// The part of each facet that overlaps cover.
-    template <int dim>
-    std::vector<double>
-    covered_parts(const std::vector<Facet<dim>>   &facets,
-                  const std::vector<Overlap<dim>> &overlaps)
-    {
-      std::vector<double> parts(facets.size(), 0.);
-      for (const Overlap<dim> &overlap : overlaps)
-        for (const auto &point : overlap.points)
-          parts[overlap.first] +=
-            (dim - 1.) * point.weight / facets[overlap.first].size();
-      return parts;
-    }
-
-
-
     /// The overlaps of two sides that are near each other, or as far apart as
     /// it takes to cover the first one.
     template <int dim>

@@ -20,21 +20,15 @@ namespace Debond
 
 
 
-    /// The faces of a boundary, or all outer ones of a region.
-    template <int dim>
+    /// The outer faces of cells for which this holds.
+    template <int dim, typename Predicate>
     InterfaceSide<dim>
-    faces_of(const std::string                &name,
-             const PieceNames                 &names,
-             const dealii::Triangulation<dim> &mesh)
+    outer_faces(const dealii::Triangulation<dim> &mesh, const Predicate &is_in)
     {
-      const auto         boundary = names.boundaries.find(name);
       InterfaceSide<dim> side;
       for (const auto &cell : mesh.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() &&
-              (boundary != names.boundaries.end() ?
-                 boundary->second.count(face->boundary_id()) > 0 :
-                 names.regions.at(name).count(cell->material_id()) > 0))
+          if (face->at_boundary() && is_in(cell, face))
             {
               Facet<dim> facet;
               for (unsigned int v = 0; v < dim; ++v)
@@ -61,6 +55,23 @@ namespace Debond
 
 
 
+    /// The faces of a boundary, or all outer ones of a region.
+    template <int dim>
+    InterfaceSide<dim>
+    faces_of(const std::string                &name,
+             const PieceNames                 &names,
+             const dealii::Triangulation<dim> &mesh)
+    {
+      const auto boundary = names.boundaries.find(name);
+      return outer_faces(mesh, [&](const auto &cell, const auto &face) {
+        return boundary != names.boundaries.end() ?
+                 boundary->second.count(face->boundary_id()) > 0 :
+                 names.regions.at(name).count(cell->material_id()) > 0;
+      });
+    }
+
+
+
     /// Whether each facet of the high side lies on the low one by more than
     /// half of it, and whether something of these lies on each of the low side,
     /// which may be much larger.
@@ -71,23 +82,17 @@ namespace Debond
     {
       const auto overlaps =
         find_overlaps(apart(high), low, Tolerance::touching);
-      const auto area = [](const Overlap<dim> &overlap) {
-        double sum = 0.;
-        for (const auto &point : overlap.points)
-          sum += point.weight;
-        return sum;
-      };
-      std::vector<double> covered(high.size(), 0.);
-      for (const Overlap<dim> &overlap : overlaps)
-        covered[overlap.first] += area(overlap);
       std::array<std::vector<char>, 2> result;
-      for (unsigned int f = 0; f < high.size(); ++f)
-        result[0].push_back(2. * covered[f] > high[f].size() / (dim - 1.));
-      result[1].assign(low.size(), 0);
+      for (const double part : covered_parts(high, overlaps))
+        result[0].push_back(part > 0.5);
+      std::vector<double> by_high(low.size(), 0.);
       for (const Overlap<dim> &overlap : overlaps)
-        if (result[0][overlap.first] &&
-            area(overlap) > Tolerance::same_place * high[overlap.first].size())
-          result[1][overlap.second] = 1;
+        if (result[0][overlap.first])
+          for (const auto &point : overlap.points)
+            by_high[overlap.second] +=
+              point.weight / high[overlap.first].size();
+      for (const double part : by_high)
+        result[1].push_back(part > Tolerance::same_place);
       return result;
     }
 
@@ -127,6 +132,77 @@ namespace Debond
                 of_name.erase(old_id);
             }
       return ids;
+    }
+
+
+
+    /// Moves the vertices of a high side that lies on the low one, but for
+    /// those at its edge, along their normals to where the distance is zero in
+    /// the mean.
+    template <int dim>
+    void
+    close_curved_side(const std::set<dealii::types::boundary_id> &high_ids,
+                      const InterfaceSide<dim>                   &low,
+                      const dealii::Triangulation<dim>           &mesh)
+    {
+      // The facets of a curve on two meshes are apart by the square of their
+      // lengths, between vertices that are on the curve. If the side that
+      // carries the jumps is what the projection P makes of the other one,
+      // turning both bodies together has no jumps, and what acts across the
+      // curve is of second order. See MortarInterface for the functions psi; on
+      // a facet that is covered psi_i = (dim + 1) phi_i - 1. Each round leaves
+      // a small part of the distances.
+      const auto is_high = [&](const auto &, const auto &face) {
+        return high_ids.count(face->boundary_id()) > 0;
+      };
+      std::set<unsigned int> at_edge;
+      for (const Facet<dim> &facet :
+           outer_faces(mesh, [&](const auto &cell, const auto &face) {
+             return !is_high(cell, face);
+           }).facets)
+        at_edge.insert(facet.vertices.begin(), facet.vertices.end());
+      for (unsigned int round = 0; round < 5; ++round)
+        {
+          const InterfaceSide<dim> high = outer_faces(mesh, is_high);
+          const auto               overlaps =
+            find_overlaps(high.facets, low.facets, Tolerance::touching);
+          const auto parts = covered_parts(high.facets, overlaps);
+          if (*std::min_element(parts.begin(), parts.end()) <
+                Tolerance::covered ||
+              !touch(high.facets, low.facets, overlaps))
+            return;
+          struct Sums
+          {
+            double                 weight = 0., distance = 0.;
+            dealii::Tensor<1, dim> normal = {};
+          };
+          std::map<unsigned int, Sums> sums;
+          for (const Overlap<dim> &overlap : overlaps)
+            for (const auto &point : overlap.points)
+              for (unsigned int v = 0; v < dim; ++v)
+                {
+                  const Facet<dim> &facet = high.facets[overlap.first];
+                  const double      psi =
+                    point.weight * ((dim + 1.) * point.on_first[v] - 1.);
+                  Sums &of_vertex = sums[facet.vertices[v]];
+                  of_vertex.weight += psi;
+                  of_vertex.distance += psi * point.distance;
+                  of_vertex.normal += point.weight * facet.normal;
+                }
+          for (std::size_t f = 0; f < high.faces.size(); ++f)
+            for (unsigned int v = 0; v < dim; ++v)
+              if (const auto at = sums.find(high.facets[f].vertices[v]);
+                  at != sums.end() && at_edge.count(at->first) == 0)
+                {
+                  const double way = at->second.distance / at->second.weight;
+                  if (std::abs(way) >
+                      Tolerance::same_cell * high.facets[f].corners[0].distance(
+                                               high.facets[f].corners[1]))
+                    high.faces[f]->vertex(v) +=
+                      way / at->second.normal.norm() * at->second.normal;
+                  sums.erase(at);
+                }
+        }
     }
   } // namespace
 
@@ -195,6 +271,13 @@ namespace Debond
               refuse_taken(k, id);
               taken.insert(id);
             }
+        close_curved_side(ids[0],
+                          outer_faces(mesh,
+                                      [&](const auto &, const auto &face) {
+                                        return ids[1].count(
+                                                 face->boundary_id()) > 0;
+                                      }),
+                          mesh);
         names.boundaries[interface.name + "_high"] = ids[0];
         names.boundaries[interface.name + "_low"]  = ids[1];
         ids[0].insert(ids[1].begin(), ids[1].end());

@@ -248,6 +248,21 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<double>
+  covered_parts(const std::vector<Facet<dim>>   &first,
+                const std::vector<Overlap<dim>> &overlaps)
+  {
+    std::vector<double> parts(first.size(), 0.);
+    for (const Overlap<dim> &overlap : overlaps)
+      for (const auto &point : overlap.points)
+        parts[overlap.first] +=
+          (dim - 1.) * point.weight / first[overlap.first].size();
+    return parts;
+  }
+
+
+
+  template <int dim>
   bool
   touch(const std::vector<Facet<dim>>   &first,
         const std::vector<Facet<dim>>   &second,
@@ -330,6 +345,7 @@ namespace Debond
 
   DEBOND_INSTANTIATE_CLASS(Facet);
   DEBOND_INSTANTIATE(vertex_normals);
+  DEBOND_INSTANTIATE(covered_parts);
   DEBOND_INSTANTIATE(touch);
   DEBOND_INSTANTIATE(find_overlaps);
 } // namespace Debond

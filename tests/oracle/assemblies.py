@@ -209,6 +209,32 @@ class Problem:
                       for body, first in zip(bodies, self.firsts)
                       for side, faces in body.sides.items()}
 
+    def close_curves(self):
+        """Moves what carries jumps, but for its edge, to where the distance is zero in the mean."""
+        for slave, master in self.joints:
+            edge = {v for name, side in self.sides.items() if name != slave
+                    for face, _ in side for v in face}
+            for _ in range(5):
+                vectors = [(face, area_vector(self.points[face], self.points[v]))
+                           for face, v in self.sides[slave]]
+                sums = {v: np.zeros(2 + self.dim) for face, _ in vectors for v in face}
+                for face, vector in vectors:
+                    for v in face:
+                        sums[v][2:] += vector
+                for face, vector in vectors:
+                    p, bases = self.points[face], [sums[v][2:] / np.linalg.norm(sums[v][2:])
+                                                   for v in face]
+                    for q in (self.points[other] for other, _ in self.sides[master]):
+                        for w, l, m in common_edge(p, q, bases) if len(face) == 2 else (
+                                common_polygon(p, q, vector)):
+                            way = m @ q - l @ p
+                            distance = math.copysign(np.linalg.norm(way), way @ vector)
+                            for v, psi in zip(face, (self.dim + 1) * l - 1):
+                                sums[v][:2] += w * psi, w * psi * distance
+                for v in sums.keys() - edge:
+                    weight, distance, *normal = sums[v]
+                    self.points[v] += distance / weight * (normal / np.linalg.norm(normal))
+
     def entries(self, folder):
         names = [f"interface_{k + 1}" for k in range(len(self.joints))]
         values = {"Mesh/Interfaces": ", ".join(map(" | ".join, self.joints)),

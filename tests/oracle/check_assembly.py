@@ -36,6 +36,7 @@ def compare(name, problem, result, random, tolerance=1e-9):
     check(name + ": success", result["status"] == "success", result["errors"])
     if result["status"] != "success":
         return False
+    problem.close_curves()
     problem.condense()
     dim, places = problem.dim, {tuple(problem.points[bond.where].round(7) + 0.): k
                                 for k, bond in enumerate(problem.bonds)}

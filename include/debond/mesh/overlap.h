@@ -81,6 +81,14 @@ namespace Debond
 
 
 
+  /// The part of each facet of the first side that overlaps cover.
+  template <int dim>
+  std::vector<double>
+  covered_parts(const std::vector<Facet<dim>>   &first,
+                const std::vector<Overlap<dim>> &overlaps);
+
+
+
   /**
    * The common refinement of two sides of an interface, seen from the first
    * one, in the order of its facets. Points go over along the normal of the
