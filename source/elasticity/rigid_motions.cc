@@ -162,7 +162,16 @@ namespace Debond
     std::vector<std::string> components;
     for (unsigned int k = 0; k < n; ++k)
       {
-        if (diagonal[k] > 1. - Tolerance::pure_motion)
+        // Of several bodies those that nothing holds have one name for all.
+        const unsigned int body = k / n_of_body<dim>;
+        if (bodies.size() > 1 &&
+            diagonal.segment<n_of_body<dim>>(n_of_body<dim> * body).minCoeff() >
+              1. - Tolerance::pure_motion)
+          {
+            if (k % n_of_body<dim> == 0)
+              result.names.push_back("all motions" + bodies[body]);
+          }
+        else if (diagonal[k] > 1. - Tolerance::pure_motion)
           result.names.push_back(name_of<dim>(k, bodies));
         // If no unit motion is free by itself, the message names the ones of
         // which a free motion is composed with more than a tenth.

@@ -281,11 +281,13 @@ namespace Debond
         dealii::Utilities::split_string_list(text, '|');
       // Parts of other programs have colons in their own names, as bolt:2.
       std::string       name  = "interface_" + std::to_string(number);
-      const std::size_t colon = sides[0].find(':');
-      if (colon != std::string::npos && known.count(sides[0]) == 0)
+      const std::size_t colon = text.find(':');
+      if (sides.size() == 2 && colon != std::string::npos &&
+          known.count(sides[0]) == 0)
         {
-          name     = dealii::Utilities::trim(sides[0].substr(0, colon));
-          sides[0] = dealii::Utilities::trim(sides[0].substr(colon + 1));
+          name = dealii::Utilities::trim(text.substr(0, colon));
+          sides[0] =
+            dealii::Utilities::trim(sides[0].substr(sides[0].find(':') + 1));
         }
       if (sides.size() != 2 || name.empty())
         throw std::invalid_argument(
@@ -301,9 +303,9 @@ namespace Debond
         name, sides[0], sides[1]
       };
       for (const char *ending : {"", "_high", "_low"})
-        if (boundaries.count(interface.name + ending) > 0)
-          throw std::invalid_argument("the body has a boundary " +
-                                      interface.name + ending +
+        if (known.count(interface.name + ending) > 0)
+          throw std::invalid_argument("the body has a piece " + interface.name +
+                                      ending +
                                       ": give the interface another name, as "
                                       "in NAME: " +
                                       join(sides, " | "));
