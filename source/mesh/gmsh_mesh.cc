@@ -48,6 +48,8 @@ namespace Debond
         take_groups();
         find_bodies();
         check_hanging_nodes();
+        if (!hinge.empty())
+          fail(hinge);
       }
 
       std::unique_ptr<SourceMesh<dim>>
@@ -482,7 +484,7 @@ namespace Debond
               }
       }
 
-      /// Finds the bodies, and checks that what is connected by vertices is so
+      /// Finds the bodies, and whether what is connected by vertices is so
       /// through faces: bodies with less in common would turn about it.
       void
       find_bodies()
@@ -499,23 +501,24 @@ namespace Debond
         };
         for (const auto &[a, b] : neighbours)
           root[find(a)] = find(b);
-        body_of.assign(vertices.size(), cells.size());
-        std::vector<std::size_t> cell_at(vertices.size());
+        // What hangs together is one body for the hanging nodes, which say more
+        // about the file.
+        std::vector<std::size_t> cell_at(vertices.size(), cells.size());
         for (const Simplex &simplex : simplices)
           for (const unsigned int v : simplex.corners)
-            if (body_of[v] == cells.size())
-              {
-                body_of[v] = find(simplex.cell);
-                cell_at[v] = simplex.cell;
-              }
-            else if (body_of[v] != find(simplex.cell))
+            if (cell_at[v] == cells.size())
+              cell_at[v] = simplex.cell;
+            else if (find(cell_at[v]) != find(simplex.cell))
               {
                 std::ostringstream place;
                 place << vertices[v];
-                fail(element(simplex.cell) + " hangs together with " +
-                     element(cell_at[v]) + " by less than a face, at (" +
-                     place.str() + ")");
+                hinge = element(simplex.cell) + " hangs together with " +
+                        element(cell_at[v]) + " by less than a face, at (" +
+                        place.str() + ")";
+                root[find(simplex.cell)] = find(cell_at[v]);
               }
+        for (const std::size_t c : cell_at)
+          body_of.push_back(c < cells.size() ? find(c) : c);
       }
 
       /// Normal to what these points span, as long as it is large.
@@ -636,7 +639,8 @@ namespace Debond
       std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
       std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
       std::vector<std::size_t>                         body_of; ///< by vertex
-      std::vector<FaceKey>                             inside;
+      std::string hinge; ///< where bodies have less than a face in common
+      std::vector<FaceKey>       inside;
       std::map<Corners, Element> outer_faces, ///< in groups, by sorted
         inner_faces;                          ///< corners
       std::map<std::string, InnerGroup> inner_groups;
