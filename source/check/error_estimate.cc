@@ -4,6 +4,7 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <debond/base/infinity.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
@@ -546,7 +547,7 @@ namespace Debond
                  given.dead_loads.traction(id, point, normal);
             if (is_low)
               {
-                if (const auto [across, there] = face_across(point);
+                if (const auto [across, there] = face_across(point, id);
                     across != nullptr)
                   r = with_foundation(r, face, *across, there);
               }
@@ -564,22 +565,36 @@ namespace Debond
       }
 
       /// The contact face on the high side of an interface that is across from
-      /// a point of the low side, and the barycentric coordinates there; null
-      /// where nothing is across. What bonds bear is the same along the normals
-      /// of both.
+      /// a point of its low side, a face with this id, and the barycentric
+      /// coordinates there; null where nothing is across. What bonds bear is
+      /// the same along the normals of both.
       std::pair<const typename ContactBoundary<dim>::Face *,
                 std::array<double, dim>>
-      face_across(const dealii::Point<dim> &point) const
+      face_across(const dealii::Point<dim>        &point,
+                  const dealii::types::boundary_id low_id) const
       {
-        // Of the nearest faces the point is within one, or at an edge of two.
-        // The coordinates are those in the simplex of the face and a point
-        // above its first vertex.
+        // Sides of other interfaces may be nearer, beyond a thin ply.
+        const auto &interfaces = given.conditions.interfaces;
+        const auto  own        = std::find_if(interfaces.begin(),
+                                      interfaces.end(),
+                                      [low_id](const auto &interface) {
+                                        return interface.low.count(low_id) > 0;
+                                      });
+        const auto  is_across  = [&](const auto &box) {
+          return own->high.count(boundary.faces[box.second].id) > 0;
+        };
         std::vector<std::pair<dealii::BoundingBox<dim>, unsigned int>> near;
-        of_interfaces.query(boost::geometry::index::nearest(point, n_nearest),
-                            std::back_inserter(near));
+        of_interfaces.query(
+          boost::geometry::index::nearest(point, n_nearest) &&
+            boost::geometry::index::satisfies(is_across),
+          std::back_inserter(near));
+
+        // Boxes of curved sides overlap: that face is taken which is nearest to
+        // the point, and there the coordinates of its foot, those in the
+        // simplex of the face and a point above its first vertex.
         const typename ContactBoundary<dim>::Face *best = nullptr;
         std::array<double, dim>                    best_place{};
-        double innermost = Tolerance::covered - 1.;
+        double                                     least_distance = infinity;
         for (const auto &[unused, f] : near)
           {
             const auto                             &face = boundary.faces[f];
@@ -591,21 +606,22 @@ namespace Debond
             std::array<double, dim> place;
             std::copy_n(all.begin(), dim, place.begin());
             place[0] += all[dim];
-            const double least = *std::min_element(place.begin(), place.end());
-            if (least > innermost)
+            if (*std::min_element(place.begin(), place.end()) <=
+                Tolerance::covered - 1.)
+              continue;
+            double sum = 0.;
+            for (double &coordinate : place)
+              sum += coordinate = std::max(coordinate, 0.);
+            dealii::Tensor<1, dim> to_foot = -1. * point;
+            for (unsigned int v = 0; v < dim; ++v)
+              to_foot += (place[v] /= sum) * face.vertices[v];
+            if (to_foot.norm() < least_distance)
               {
-                innermost  = least;
-                best       = &face;
-                best_place = place;
+                least_distance = to_foot.norm();
+                best           = &face;
+                best_place     = place;
               }
           }
-        if (best == nullptr)
-          return {};
-        double sum = 0.;
-        for (double &coordinate : best_place)
-          sum += coordinate = std::max(coordinate, 0.);
-        for (double &coordinate : best_place)
-          coordinate /= sum;
         return {best, best_place};
       }
 

@@ -243,7 +243,7 @@ namespace Debond
               ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
               // A vertex that has the jump of another one is not there, whose
               // faces have one normal.
-              if (faces[f].gaps[v] == infinity)
+              if (faces[f].borrowed[v])
                 {
                   places[f][v] = 0;
                   continue;

@@ -306,7 +306,8 @@ namespace Debond
         const unsigned int index = face.indices[n];
         const Node        &node  = nodes.at(index);
         face.indices[n]          = node.jump;
-        face.gaps[n]             = node.jump == index ? node.gap : infinity;
+        face.borrowed[n]         = node.jump != index;
+        face.gaps[n]             = node.gap;
       }
   }
 

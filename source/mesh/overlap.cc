@@ -213,6 +213,24 @@ namespace Debond
       const Facet<3> &facet;
       const double    size;
     };
+
+
+
+    /// The normals at the vertices of a side, the mean of those of its facets
+    /// by their sizes.
+    template <int dim>
+    std::map<unsigned int, dealii::Tensor<1, dim>>
+    vertex_normals(const std::vector<Facet<dim>> &side)
+    {
+      std::map<unsigned int, dealii::Tensor<1, dim>> normals;
+      for (const Facet<dim> &facet : side)
+        for (const unsigned int v : facet.vertices)
+          normals[v] += facet.size() * facet.normal;
+      for (auto &[unused, normal] : normals)
+        if (normal.norm() > 0.)
+          normal /= normal.norm();
+      return normals;
+    }
   } // namespace
 
 
@@ -227,22 +245,6 @@ namespace Debond
       return dealii::cross_product_3d(corners[1] - corners[0],
                                       corners[2] - corners[0])
         .norm();
-  }
-
-
-
-  template <int dim>
-  std::map<unsigned int, dealii::Tensor<1, dim>>
-  vertex_normals(const std::vector<Facet<dim>> &side)
-  {
-    std::map<unsigned int, dealii::Tensor<1, dim>> normals;
-    for (const Facet<dim> &facet : side)
-      for (const unsigned int v : facet.vertices)
-        normals[v] += facet.size() * facet.normal;
-    for (auto &[unused, normal] : normals)
-      if (normal.norm() > 0.)
-        normal /= normal.norm();
-    return normals;
   }
 
 
@@ -268,19 +270,25 @@ namespace Debond
         const std::vector<Facet<dim>>   &second,
         const std::vector<Overlap<dim>> &overlaps)
   {
-    // A normal at a vertex is off that of a facet by half of the angle. What a
-    // facet is off counts twice, for vertices need not be on the curve exactly,
-    // and places in files have some digits.
+    // An edge of length h whose ends have normals at an angle is off a curve by
+    // h times an eighth of it, and the normals of neighbouring facets are at
+    // about the angle of the ends. What a facet is off counts more than twice,
+    // for vertices need not be on the curve exactly, and places in files have
+    // some digits.
     const auto deviations = [](const std::vector<Facet<dim>> &side) {
-      const auto          normals = vertex_normals(side);
+      std::map<unsigned int, std::vector<dealii::Tensor<1, dim>>> normals;
+      for (const Facet<dim> &facet : side)
+        for (const unsigned int v : facet.vertices)
+          normals[v].push_back(facet.normal);
       std::vector<double> result;
       for (const Facet<dim> &facet : side)
         {
           double turn = 0.;
           for (const unsigned int v : facet.vertices)
-            turn = std::max(turn, (normals.at(v) - facet.normal).norm());
+            for (const dealii::Tensor<1, dim> &other : normals.at(v))
+              turn = std::max(turn, (other - facet.normal).norm());
           result.push_back(diameter_of(facet) *
-                           (turn / 2. + Tolerance::same_place));
+                           (0.3 * turn + Tolerance::same_place));
         }
       return result;
     };
@@ -344,7 +352,6 @@ namespace Debond
 
 
   DEBOND_INSTANTIATE_CLASS(Facet);
-  DEBOND_INSTANTIATE(vertex_normals);
   DEBOND_INSTANTIATE(covered_parts);
   DEBOND_INSTANTIATE(touch);
   DEBOND_INSTANTIATE(find_overlaps);

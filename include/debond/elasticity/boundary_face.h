@@ -24,9 +24,11 @@ namespace Debond
     double                                  measure;
     dealii::Tensor<1, dim>                  normal; ///< outward unit normal
 
-    /// The distance to the other side of an interface in the mesh; infinity if
-    /// the node has the jump of another one.
+    /// The distance to the other side of an interface in the mesh.
     std::array<double, maximum> gaps = {};
+
+    /// Whether a node has the jump of another one.
+    std::array<bool, maximum> borrowed = {};
 
     /// This is for Boost's serialisation.
     template <typename Archive>

@@ -124,13 +124,6 @@ namespace Debond
       return !basis().rows(BasisStep::jumps).empty();
     }
 
-    /// Returns whether the meshes do not match somewhere where they are.
-    bool
-    has_mortars() const
-    {
-      return basis().rows(BasisStep::jumps).size() > node_pairs.all().size();
-    }
-
     /// The number of bodies that have no nodes in common.
     unsigned int
     n_bodies() const

@@ -6,7 +6,6 @@
 #include <deal.II/base/tensor.h>
 
 #include <array>
-#include <map>
 #include <vector>
 
 namespace Debond
@@ -43,14 +42,6 @@ namespace Debond
     unsigned int       first, second; ///< numbers of the facets
     std::vector<Point> points;
   };
-
-
-
-  /// The normals at the vertices of a side, the mean of those of its facets by
-  /// their sizes.
-  template <int dim>
-  std::map<unsigned int, dealii::Tensor<1, dim>>
-  vertex_normals(const std::vector<Facet<dim>> &side);
 
 
 
