@@ -38,6 +38,10 @@ namespace Debond
       output.matrices,
       "Write A, f, the condensed S and g, weights and bounds as Matrix Market files (*.mtx), for other programs");
     bind_switch(
+      "Proof",
+      output.proof,
+      "Write what Solver/Prove has proved: S.mtx, problem.json and proof.json, which scripts/check_proof checks");
+    bind_switch(
       "Load path contact VTU",
       output.path_contact_vtu,
       "Write load_path_contact.pvd, the contact boundary at each factor, for ParaView");

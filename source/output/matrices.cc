@@ -4,6 +4,8 @@
 #include <debond/base/instantiate.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/output/matrices.h>
+#include <debond/output/proof_files.h>
+#include <debond/solve/minimum/lumped_bonds.h>
 
 #include <boost/serialization/utility.hpp>
 
@@ -141,6 +143,24 @@ namespace Debond
 
 
 
+    /// The problem on the contact nodes alone.
+    template <int dim>
+    DiscreteProblem
+    discrete_problem(const Scene<dim> &scene)
+    {
+      const AdhesionIntegral<dim> &adhesion = scene.adhesion();
+      const Condensation           condensed =
+        condense_to_contact(scene.problem(), adhesion);
+      NeighbourGraph graph(adhesion.n_nodes());
+      return {condensed.schur_complement(),
+              condensed.load(),
+              condensed.energy_at_zero(),
+              adhesion.contact_boundary().upper_bounds(),
+              lumped_bonds(adhesion, graph)};
+    }
+
+
+
     /// F in u = F x, x being Cartesian components at nodes.
     template <int dim>
     void
@@ -198,14 +218,27 @@ namespace Debond
 
   template <int dim>
   std::vector<OutputFile>
-  matrix_files(const Scene<dim> &scene, const bool wanted)
+  matrix_files(const bool        wanted,
+               const Scene<dim> &scene,
+               const Solution   &result)
   {
-    // S, g and c_0 together, once one of them is to be written.
-    const auto on_contact = std::make_shared<std::unique_ptr<Condensation>>();
-    const auto condensed  = [&scene, on_contact]() -> const Condensation  &{
-      if (*on_contact == nullptr)
-        on_contact->reset(new Condensation(
-          condense_to_contact(scene.problem(), scene.adhesion())));
+    // A proof that does not hold for J as it is has been withdrawn.
+    const WhichMinimum &minimum   = result.minimum;
+    const auto          has_proof = [&minimum]() {
+      return minimum.recorded != nullptr && minimum.kind == MinimumKind::global;
+    };
+    const auto has_either = [wanted, has_proof]() {
+      return wanted || has_proof();
+    };
+    // S, g and c_0 together, once one of them is to be written: those of a
+    // proof, which is about just these numbers.
+    const auto on_contact = std::make_shared<std::optional<DiscreteProblem>>();
+    const auto condensed =
+      [&scene, &minimum, on_contact]() -> const DiscreteProblem & {
+      if (minimum.recorded != nullptr)
+        return minimum.recorded->problem;
+      if (!*on_contact)
+        on_contact->emplace(discrete_problem(scene));
       return **on_contact;
     };
     // The numbers of contact nodes are in the order of contact_profile.csv and
@@ -243,16 +276,34 @@ namespace Debond
         mode = in_order(mode, unknowns.serial_order());
       write_array(modes, path);
     });
-    add("S.mtx", [condensed](const std::string &path) {
-      write_dense(condensed().schur_complement(), path);
-    });
+    files.push_back({"S.mtx", has_either, [condensed](const std::string &path) {
+                       write_dense(condensed().S, path);
+                     }});
     add("g.mtx", [condensed](const std::string &path) {
-      const Eigen::VectorXd &g = condensed().load();
+      const Eigen::VectorXd &g = condensed().g;
       write_array<std::vector<double>>({{g.begin(), g.end()}}, path);
     });
     add("c_0.mtx", [condensed](const std::string &path) {
-      write_array<std::vector<double>>({{condensed().energy_at_zero()}}, path);
+      write_array<std::vector<double>>({{condensed().c_0}}, path);
     });
+    // These have the checksums of S.mtx and of each other.
+    files.push_back({"problem.json",
+                     [has_either, condensed, &scene]() {
+                       return has_either() &&
+                              is_sum_over_nodes(scene.adhesion()) &&
+                              has_format(condensed());
+                     },
+                     [condensed](const std::string &path) {
+                       write_problem(condensed(), path);
+                     }});
+    files.push_back(
+      {"proof.json", has_proof, [&result, &minimum](const std::string &path) {
+         write_proof(*minimum.recorded,
+                     {{minimum.lower_bound,
+                       std::max(result.functional, minimum.functional) +
+                         minimum.rounding}},
+                     path);
+       }});
     // Rows of A, counted from 1 as in the files. They say which unknowns the
     // rows of S are.
     add("contact.mtx", [&scene](const std::string &path) {

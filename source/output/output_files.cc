@@ -86,7 +86,8 @@ namespace Debond
     // writes it afterwards. The functions keep references, so that the same
     // list can be made before there is a result. Most files need a
     // displacement, which there is none of if the body detaches at once.
-    std::vector<OutputFile> files = matrix_files(scene, output.matrices);
+    std::vector<OutputFile> files =
+      matrix_files(output.matrices, scene, result.solution);
     // One rank writes body.vtu, several the pieces and body.pvtu. Both are in
     // the list, so that the other one does not remain of an earlier run with
     // another number of ranks.

@@ -117,7 +117,7 @@ namespace
         for (unsigned int i = 0; i < state.size(); ++i)
           lost += state[i] < node.lower(n + i) || state[i] > node.upper(n + i);
         above += node.bound > minimum + rounding;
-        const double certificate = bound.bound_at(at_minimum);
+        const double certificate = bound.bound_at(at_minimum).value;
         above += certificate > minimum + rounding;
         certified += certificate > minimum - tolerance;
 

@@ -15,6 +15,7 @@ namespace Debond
     bool        history          = true;
     bool        displacement     = false;
     bool        matrices         = false;
+    bool        proof            = false;
     bool        path_body_vtu    = false;
     bool        path_contact_vtu = true;
     bool        machine_details  = true;

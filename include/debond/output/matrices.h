@@ -7,11 +7,15 @@
 namespace Debond
 {
   /// Returns the discrete problem of a scene as Matrix Market files for other
-  /// programs, if they are @p wanted; see doc/reference/output.md. Keeps a
-  /// reference to the scene. A is factorised once more for S and g.
+  /// programs, if they are @p wanted, and the proof of its minimum if the
+  /// @p result has one when they are written; see doc/reference/output.md and
+  /// proofs.md. Keeps references. Without a proof A is factorised once more for
+  /// S and g.
   template <int dim>
   std::vector<OutputFile>
-  matrix_files(const Scene<dim> &scene, const bool wanted);
+  matrix_files(const bool        wanted,
+               const Scene<dim> &scene,
+               const Solution   &result);
 } // namespace Debond
 
 #endif

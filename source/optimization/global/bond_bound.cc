@@ -39,6 +39,9 @@ namespace Debond
       /// has the value of its term at x in place of the least one.
       Eigen::MatrixXd bounds = {};
 
+      /// Of planes below pairs of kinks, with the bounds.
+      Eigen::VectorXd forces = {};
+
       bool
       is_decided(const unsigned int bond) const
       {
@@ -148,7 +151,9 @@ namespace Debond
                                          g.cwiseAbs()) +
                                       (tiny * terms).cast<double>(),
                               l = phi.displacements(node.x);
-        double size             = static_cast<double>(x.dot(Ax));
+        if (!phi.kinks().pairs().empty())
+          forces = of_pairs;
+        double size = static_cast<double>(x.dot(Ax));
         bounds.resize(phi.f.size(), 3);
         for (unsigned int i = 0; i < phi.f.size(); ++i)
           bounds.row(i) << excluded * node.lower(n + i),
@@ -208,6 +213,14 @@ namespace Debond
         bounds -= 4. * Tolerance::epsilon * bounds.cwiseAbs();
         return bounds.row(0).head(2).minCoeff();
       }
+
+      /// What set_bounds() has shown with the matrix @p S.
+      ProofRound
+      round(const MatrixView &S)
+      {
+        const double value = set_bounds();
+        return {S.diagonal() - A.diagonal(), node.x, forces, value};
+      }
     };
   } // namespace
 
@@ -258,12 +271,12 @@ namespace Debond
 
 
 
-  double
+  ProofRound
   BondBound::bound_at(const Eigen::VectorXd &z) const
   {
     auto node = root(z.dot(0.5 * S * z - g) + phi.change(z));
     if (!node)
-      return -infinity;
+      return {};
     node->x                   = z;
     BondRelaxation relaxation = {phi, g, *node, S};
     relaxation.decide();
@@ -277,8 +290,8 @@ namespace Debond
           phi.f[phi.bonds[j]].needed_convexity(l(phi.bonds[j])) +
         Tolerance::floor_at_point * std::min(relaxation.k(j), S(j, j));
     relaxation.D = before - relaxation.A.diagonal();
-    return is_safely_positive_definite(relaxation.A) ? relaxation.set_bounds() :
-                                                       -infinity;
+    return is_safely_positive_definite(relaxation.A) ? relaxation.round(S) :
+                                                       ProofRound();
   }
 
 
@@ -308,7 +321,8 @@ namespace Debond
             relaxation.D = before - relaxation.A.diagonal();
           }
         relaxation.minimise(upper);
-        const double value = relaxation.set_bounds();
+        result.rounds.push_back(relaxation.round(S));
+        const double value = result.rounds.back().value;
         node.bound         = std::max(node.bound, value);
         // Without a bound, as x may be no number where A is nearly singular,
         // that of before is left.
@@ -342,13 +356,17 @@ namespace Debond
               // The term that is farthest above its least value.
               if (bounds(i, 2) > highest)
                 {
-                  highest = bounds(i, 2);
-                  result  = {n + i, 0.5, {{bounds(i, 1), bounds(i, 0)}}, 0.};
+                  highest            = bounds(i, 2);
+                  result.unknown     = n + i;
+                  result.split       = 0.5;
+                  result.half_bounds = {{bounds(i, 1), bounds(i, 0)}};
                 }
             }
+        result.rounds.back().lower = node.lower;
+        result.rounds.back().upper = node.upper;
         if (!is_new && result.unknown)
           return result;
-        result = {};
+        result.unknown.reset();
         if (!is_new)
           break;
         if ((node.lower - node.upper).maxCoeff() > 0.)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/processes.h>
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/bond_bound.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <future>
@@ -32,6 +34,33 @@ namespace Debond
       Eigen::VectorXd s;
       double          value = infinity;
     };
+
+
+
+    /// What the box of the root follows from.
+    ProofRound
+    round_of_root(const MatrixView &S, const ProofNode &root)
+    {
+      // Without convexity of its own an unknown that nothing holds has no least
+      // value on a half-line. What is taken from S for this has to change the
+      // diagonal of its inverse, which makes the box, by less than what the box
+      // is rounded outwards.
+      const Eigen::Index n       = S.rows();
+      const auto         inverse = safe_inverse(S);
+      double             largest = 0.;
+      for (Eigen::Index i = 0; inverse && i < n; ++i)
+        largest = std::max(largest,
+                           inverse->col(i).cwiseAbs2().dot(S.diagonal()) /
+                             (*inverse)(i, i));
+      return {std::min(Tolerance::floor_at_point,
+                       0.25 * Tolerance::outwards / largest) *
+                S.diagonal(),
+              root.x,
+              {},
+              -infinity,
+              root.lower,
+              root.upper};
+    }
 
 
 
@@ -67,12 +96,14 @@ namespace Debond
       {
         // The cheapest proof first: most minima of well supported bodies are
         // proved by one factorisation at the minimum.
-        const double at_start = node_bound.bound_at(result.s);
+        const ProofRound at_point = node_bound.bound_at(result.s);
+        const double     at_start = at_point.value;
         if (at_start >= result.upper - parameters.tolerance)
           {
             result.status  = ProofStatus::proved;
             least_left_out = at_start;
             result.nodes   = 1;
+            keep(0, {{at_point}, {}, 0., {}});
           }
         else if (parameters.maximum_nodes > 0)
           {
@@ -81,6 +112,8 @@ namespace Debond
               return result;
             // Both are bounds for all points, of which the better one counts.
             root->bound = std::max(root->bound, at_start);
+            if (parameters.keeps_record)
+              keep(0, {{round_of_root(problem.S, *root)}, {}, 0., {}});
             open.insert(*root);
             result.status = ProofStatus::proved;
           }
@@ -150,6 +183,7 @@ namespace Debond
       std::set<PieceState>    tried; ///< states that were minimised
       double                  least_left_out;
       unsigned int            n_created = 0;
+      std::size_t             n_rounds  = 0; ///< in the record
 
       void
       minimise_from(const Eigen::VectorXd &x, Job &job) const
@@ -192,7 +226,8 @@ namespace Debond
           return ProofStatus::node_limit;
         if (any_rank(seconds() > parameters.maximum_seconds))
           return ProofStatus::time_limit;
-        if (double(open.size()) * vectors_per_node * n * sizeof(double) >
+        if (double(open.size() + n_rounds) * vectors_per_node * n *
+              sizeof(double) >
             parameters.maximum_bytes)
           return ProofStatus::memory_limit;
         return ProofStatus::proved;
@@ -248,9 +283,30 @@ namespace Debond
           other.get();
       }
 
+      /// Adds to the record of a node, if there is to be one.
+      void
+      keep(const unsigned int number, const NodeRecord &found)
+      {
+        if (!parameters.keeps_record)
+          return;
+        NodeRecord &node = result.record[number];
+        n_rounds += found.rounds.size();
+        node.rounds.insert(node.rounds.end(),
+                           found.rounds.begin(),
+                           found.rounds.end());
+        node.unknown = found.unknown;
+        node.split   = found.split;
+        node.halves  = found.halves;
+      }
+
       void
       branch(const Job &job)
       {
+        keep(job.node.number,
+             {job.result.rounds,
+              job.result.unknown,
+              job.result.split,
+              {{n_created + 1, n_created + 2}}});
         if (!job.result.unknown)
           {
             least_left_out = std::min(least_left_out, job.result.least);

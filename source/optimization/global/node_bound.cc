@@ -87,6 +87,10 @@ namespace Debond
             minimise_relaxation(problem, envelopes, node.x);
             const LowerBound lower_bound(problem, node.x);
             node.bound = std::max(node.bound, lower_bound.value);
+            result.rounds.push_back({S.diagonal() - problem.A.diagonal(),
+                                     node.x,
+                                     {},
+                                     lower_bound.value});
             // With all decided, rounding is all that is left.
             if (node.bound >= best_value - tolerance || all_decided)
               break;
@@ -94,7 +98,10 @@ namespace Debond
             // The bound grows with the distance from x. Where it is above the
             // best value nothing needs to be looked for; if that is everywhere,
             // the node is done.
-            if (!shrink(lower_bound, best_value))
+            const bool is_left         = shrink(lower_bound, best_value);
+            result.rounds.back().lower = node.lower;
+            result.rounds.back().upper = node.upper;
+            if (!is_left)
               {
                 result.least = best_value;
                 return result;
@@ -239,10 +246,10 @@ namespace Debond
                           lower_bound.growth(i, k, inverse(i, i))
                             .where_at_most(best_value,
                                            box(i, problem.f[i].pieces[k])));
-            if (left.is_empty())
-              return false;
             node.lower(i) = left.lower;
             node.upper(i) = left.upper;
+            if (left.is_empty())
+              return false;
           }
         return true;
       }
@@ -380,10 +387,10 @@ namespace Debond
 
 
 
-  double
+  ProofRound
   NodeBound::bound_at(const Eigen::VectorXd &s) const
   {
-    constexpr double nothing = -infinity;
+    ProofRound nothing;
     // With this convexity r_i s_i + f_i(s_i) is least where it is stationary.
     Eigen::MatrixXd            A = S;
     std::vector<ShiftedEnergy> f(n);
@@ -408,9 +415,12 @@ namespace Debond
       }
     if (!is_safely_positive_definite(A))
       return nothing;
-    return LowerBound({A, g, f, Eigen::VectorXd::Constant(n, nothing), upper},
-                      s)
-      .value;
+    return {
+      S.diagonal() - A.diagonal(),
+      s,
+      {},
+      LowerBound({A, g, f, Eigen::VectorXd::Constant(n, -infinity), upper}, s)
+        .value};
   }
 
 

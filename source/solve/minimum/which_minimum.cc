@@ -20,6 +20,10 @@ namespace Debond
     /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
+    /// Up to so many nodes the rounds of the first node of branch and bound take
+    /// less than the solve, and may prove what has been found.
+    constexpr unsigned int largest_proof_at_root = 400;
+
     /// The nodes of the coarsest space on which active sets of starts are
     /// guessed.
     constexpr unsigned int guess_nodes = 50;
@@ -125,8 +129,6 @@ namespace Debond
             return;
           }
         const Stage  stage("proof");
-        const double functional =
-          condensed_functional(condensed_problem(condensed, adhesion), s);
         BranchAndBoundParameters limits = proof_limits();
         // Nodes of the tree that wait keep their intervals. Branch and bound
         // ends with a valid gap before they take the remaining memory.
@@ -145,10 +147,16 @@ namespace Debond
             progress.lower += condensed.energy_at_zero();
             progress.upper += condensed.energy_at_zero();
           }
-        // A state that is lower by less than the tolerance differs in rounding,
-        // and moving to it would only shake the result.
-        if (proof.upper < functional - limits.tolerance)
-          s = proof.s;
+        take_if_lower(proof, limits.tolerance);
+        if (limits.keeps_record && proof.status == ProofStatus::proved)
+          result.recorded = std::make_shared<const RecordedProof>(
+            RecordedProof{{condensed.schur_complement(),
+                           condensed.load(),
+                           condensed.energy_at_zero(),
+                           adhesion.contact_boundary().upper_bounds(),
+                           lumped},
+                          s,
+                          proof.record});
       }
 
     private:
@@ -230,6 +238,17 @@ namespace Debond
       }
 
       void
+      take_if_lower(const BranchAndBoundResult &proof, const double tolerance)
+      {
+        // A state that is lower by less than the tolerance differs in rounding,
+        // and moving to it would only shake the result.
+        if (proof.upper <
+            condensed_functional(condensed_problem(condensed, adhesion), s) -
+              tolerance)
+          s = proof.s;
+      }
+
+      void
       search_all_nodes()
       {
         // With nodal quadrature each s_i has a law of its own, and Phi is
@@ -249,7 +268,7 @@ namespace Debond
       {
         // The cheapest first: the bound at the point takes one factorisation,
         // and if it proves the result there is nothing to search for.
-        if (try_bound_at_point())
+        if (is_proved_by(/*maximum_nodes=*/0))
           return;
         // Coarser spaces have no tangents.
         if (!adhesion.shears())
@@ -272,7 +291,7 @@ namespace Debond
         // be provable.
         edges.maximum_shift = 1;
         search_nodes(edges);
-        try_bound_at_point();
+        is_proved_by(s.size() <= largest_proof_at_root ? 1 : 0);
       }
 
       void
@@ -281,20 +300,23 @@ namespace Debond
         add_search(search_branches(problem(), moves, s));
       }
 
+      /// With no nodes by the bound at the point alone.
       bool
-      try_bound_at_point()
+      is_proved_by(const unsigned int maximum_nodes)
       {
-        // Without branching the bound needs laws that are separable and have
-        // finitely many quadratic pieces.
+        // The bounds need laws that are separable and have finitely many
+        // quadratic pieces.
         if (!is_sum_over_nodes(adhesion) || !lumped.is_piecewise_quadratic())
           return false;
-        BranchAndBoundParameters no_nodes = proof_limits();
-        no_nodes.maximum_nodes            = 0;
+        BranchAndBoundParameters limits = proof_limits();
+        limits.maximum_nodes            = maximum_nodes;
         const BranchAndBoundResult proof =
-          branch_and_bound(no_nodes, lumped_problem(), s);
-        if (proof.status == ProofStatus::proved)
-          add_proof(proof);
-        return proof.status == ProofStatus::proved;
+          branch_and_bound(limits, lumped_problem(), s);
+        if (proof.status != ProofStatus::proved)
+          return false;
+        add_proof(proof);
+        take_if_lower(proof, limits.tolerance);
+        return true;
       }
 
       /// A search on a coarser contact mesh. The best of it is minimised on the
@@ -368,15 +390,18 @@ namespace Debond
     WhichMinimum result;
     result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = parameters.searches();
-    // A J without adhesion is convex, and its minimum is the only one.
-    if (result.kind == MinimumKind::global || !(searches || parameters.prove))
+    // A J without adhesion is convex, and its minimum is the only one; a proof
+    // is for others to check then.
+    const bool is_known = result.kind == MinimumKind::global;
+    if (is_known ? !parameters.proof.keeps_record :
+                   !(searches || parameters.prove))
       return result;
 
     // The search comes first: a good upper value lets branch and bound discard
     // more nodes.
     MinimumSearch<dim> search(
       parameters, adhesion, condensed, interruption, s, result);
-    if (searches)
+    if (searches && !is_known)
       search.search();
     if (parameters.prove)
       search.prove();
@@ -384,6 +409,9 @@ namespace Debond
       result.functional =
         condensed_functional(condensed_problem(condensed, adhesion), s) +
         condensed.energy_at_zero();
+    if (parameters.proof.keeps_record && parameters.prove &&
+        result.recorded == nullptr)
+      result.notes.push_back("no proof.json: the minimum is not proved");
     result.interrupted = interruption.requested();
     return result;
   }
@@ -405,6 +433,7 @@ namespace Debond
                             8. * energy_rounding +
                             16. * std::numeric_limits<double>::epsilon() *
                               (std::abs(functional) + minimum.energy_of_bonds);
+    minimum.rounding = rounding;
     minimum.lower_bound -= rounding;
     for (ProofProgress &progress : minimum.proof_history)
       {

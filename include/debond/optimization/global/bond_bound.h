@@ -35,7 +35,7 @@ namespace Debond
     std::optional<ProofNode>
     root(const double best_value) const;
 
-    double
+    ProofRound
     bound_at(const Eigen::VectorXd &z) const;
 
     NodeResult

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_global_branch_and_bound_h
 #define debond_optimization_global_branch_and_bound_h
 
-#include <debond/optimization/global/separable_energy.h>
+#include <debond/optimization/global/proof_record.h>
 
 namespace Debond
 {
@@ -21,6 +21,8 @@ namespace Debond
     double maximum_bytes = infinity;
 
     unsigned int n_threads = 1;
+
+    bool keeps_record = false; ///< BranchAndBoundResult::record
   };
 
 
@@ -62,6 +64,8 @@ namespace Debond
     double          seconds;
 
     std::vector<ProofProgress> history; ///< at each tenth part more of nodes
+
+    ProofRecord record; ///< empty if none was to be kept
   };
 
 

@@ -3,7 +3,7 @@
 #define debond_optimization_global_node_bound_h
 
 #include <debond/optimization/global/envelope_relaxation.h>
-#include <debond/optimization/global/separable_energy.h>
+#include <debond/optimization/global/proof_record.h>
 
 #include <array>
 
@@ -38,6 +38,8 @@ namespace Debond
 
     /// If there is none, the node is done: it has no value below this.
     double least;
+
+    std::vector<ProofRound> rounds; ///< by which this was found
   };
 
 
@@ -84,11 +86,11 @@ namespace Debond
     std::optional<ProofNode>
     root(const double best_value) const;
 
-    /// A lower bound of the functional that is close to its value at @p s if
-    /// the convexity with which the terms of Phi are not below their tangents
-    /// at s leaves S positive definite; minus infinity if it does not. Takes
-    /// one factorisation.
-    double
+    /// A lower bound of the functional, the value of the round, that is close
+    /// to its value at @p s if the convexity with which the terms of Phi are
+    /// not below their tangents at s leaves S positive definite; minus infinity
+    /// if it does not. Takes one factorisation.
+    ProofRound
     bound_at(const Eigen::VectorXd &s) const;
 
     /// Raises the node's bound and shrinks its box.

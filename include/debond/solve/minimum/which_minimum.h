@@ -31,8 +31,13 @@ namespace Debond
     /// J of the result as the condensed problem has it, if there is a proof.
     double functional = 0.;
 
+    double rounding = 0.; ///< by which round_outwards() has moved the bounds
+
     /// With J in place of the condensed functional; of Solver/Prove only.
     std::vector<ProofProgress> proof_history;
+
+    /// What Solver/Prove has proved, if it was to be kept.
+    std::shared_ptr<const RecordedProof> recorded;
 
     /// Sentences about work that its limits have left undone.
     std::vector<std::string> notes;
