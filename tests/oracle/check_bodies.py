@@ -312,6 +312,23 @@ def check_layers():
               -pull**2 * width * softness / (2. * (1. + 0.7)), 1e-12)
 
 
+def check_thin_ply():
+    """The estimate of a ply between two interfaces, wider than it is thick, is that of its mirror
+    image: each side finds the one across, and none of the next interface."""
+    load = "0; if(x < 0.2, 0.0069, -0.0069)"
+    estimates = []
+    for side, cuts, stiffness, bottom, top in (
+            ("bottom", (0.02, 0.021), (6900, 69), "", load),
+            ("top", (0.019, 0.02), (69, 6900), load.replace("if", "-if"), "")):
+        estimates.append(solve(
+            MM, "Cells=4, 40", f"Cuts=y = {cuts[0]}, y = {cuts[1]}", f"Traction top={top}",
+            f"Traction bottom={bottom}", f"Clamped boundaries=left, {side}",
+            "Contact boundary=cut_1, cut_2", f"Bond stiffness cut_1={stiffness[0]}",
+            f"Bond stiffness cut_2={stiffness[1]}",
+            "Tangential displacement=free")["estimated_error"])
+    close("thin ply", *estimates, 1e-9)
+
+
 def check_refused():
     """What is wrong with a file; errors.txt has what needs none."""
     write_mesh("cut", *bar(40, 4), cut=-500)

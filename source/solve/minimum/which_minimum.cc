@@ -206,7 +206,9 @@ namespace Debond
         BranchAndBoundParameters limits = parameters.proof;
         // The tolerance of the scene is relative, branch and bound's is an
         // energy.
-        limits.tolerance *= result.energy_of_bonds;
+        limits.tolerance *= result.energy_of_bonds > 0. ?
+                              result.energy_of_bonds :
+                              condensed.energy_of_kept();
         return limits;
       }
 
@@ -232,7 +234,9 @@ namespace Debond
         const double gap       = proof.upper - proof.lower;
         // A gap below zero is rounding between two ways to compute the same
         // energy.
-        result.relative_gap = gap > 0. ? gap / result.energy_of_bonds : 0.;
+        result.relative_gap = gap > 0. && result.energy_of_bonds > 0. ?
+                                gap / result.energy_of_bonds :
+                                0.;
         if (proof.status == ProofStatus::proved)
           result.kind = MinimumKind::global;
       }
@@ -393,7 +397,7 @@ namespace Debond
     // A J without adhesion is convex, and its minimum is the only one; a proof
     // is for others to check then.
     const bool is_known = result.kind == MinimumKind::global;
-    if (is_known ? !parameters.proof.keeps_record :
+    if (is_known ? !parameters.proof.keeps_record || s.size() == 0 :
                    !(searches || parameters.prove))
       return result;
 
