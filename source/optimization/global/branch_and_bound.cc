@@ -37,25 +37,40 @@ namespace Debond
 
 
 
+    /// Steps of iterative refinement in extended precision.
+    constexpr unsigned int refinements = 3;
+
+
+
     /// What the box of the root follows from.
     ProofRound
-    round_of_root(const MatrixView &S, const ProofNode &root)
+    round_of_root(const SeparableProblem &problem, const ProofNode &root)
     {
       // Without convexity of its own an unknown that nothing holds has no least
       // value on a half-line. What is taken from S for this has to change the
       // diagonal of its inverse, which makes the box, by less than what the box
       // is rounded outwards.
-      const Eigen::Index n       = S.rows();
-      const auto         inverse = safe_inverse(S);
-      double             largest = 0.;
-      for (Eigen::Index i = 0; inverse && i < n; ++i)
+      const MatrixView &S       = problem.S;
+      const auto        inverse = safe_inverse(S);
+      double            largest = 0.;
+      for (Eigen::Index i = 0; inverse && i < S.rows(); ++i)
         largest = std::max(largest,
                            inverse->col(i).cwiseAbs2().dot(S.diagonal()) /
                              (*inverse)(i, i));
+      // A residual d of x costs d^2 / (2 D), which is much for the small D of a
+      // matrix that is nearly singular: x has to be right to its last digit.
+      using LongVector  = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+      Eigen::VectorXd x = root.x;
+      for (unsigned int step = 0; inverse && step < refinements; ++step)
+        {
+          const LongVector rest = problem.g.cast<long double>() -
+                                  S.cast<long double>() * x.cast<long double>();
+          x += *inverse * rest.cast<double>();
+        }
       return {std::min(Tolerance::floor_at_point,
                        0.25 * Tolerance::outwards / largest) *
                 S.diagonal(),
-              root.x,
+              x,
               {},
               -infinity,
               root.lower,
@@ -113,7 +128,7 @@ namespace Debond
             // Both are bounds for all points, of which the better one counts.
             root->bound = std::max(root->bound, at_start);
             if (parameters.keeps_record)
-              keep(0, {{round_of_root(problem.S, *root)}, {}, 0., {}});
+              keep(0, {{round_of_root(problem, *root)}, {}, 0., {}});
             open.insert(*root);
             result.status = ProofStatus::proved;
           }
