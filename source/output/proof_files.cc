@@ -228,9 +228,11 @@ namespace Debond
       add_round(const ProofRound &round)
       {
         rounds.push_back({{"D", json_of(round.D)}, {"x", json_of(round.x)}});
+        // Planes without slope will do for the root.
+        const Eigen::VectorXd forces =
+          round.forces.size() > 0 ? round.forces : Eigen::VectorXd::Zero(n);
         for (const Eigen::Index i : pairs)
-          rounds.back()["forces"].push_back(
-            {round.forces(i), round.forces(partner[i])});
+          rounds.back()["forces"].push_back({forces(i), forces(partner[i])});
       }
 
       /// Takes the bonds that are decided from @p bonds.

@@ -118,6 +118,9 @@ namespace Debond
             result.status  = ProofStatus::proved;
             least_left_out = at_start;
             result.nodes   = 1;
+            // With bonds of several unknowns it is one in the box of the root.
+            if (parameters.keeps_record && !problem.phi.bonds.empty())
+              keep_root(*node_bound.root(result.upper));
             keep(0, {{at_point}, {}, 0., {}});
           }
         else if (parameters.maximum_nodes > 0)
@@ -128,7 +131,7 @@ namespace Debond
             // Both are bounds for all points, of which the better one counts.
             root->bound = std::max(root->bound, at_start);
             if (parameters.keeps_record)
-              keep(0, {{round_of_root(problem, *root)}, {}, 0., {}});
+              keep_root(*root);
             open.insert(*root);
             result.status = ProofStatus::proved;
           }
@@ -312,6 +315,12 @@ namespace Debond
         node.unknown = found.unknown;
         node.split   = found.split;
         node.halves  = found.halves;
+      }
+
+      void
+      keep_root(const ProofNode &root)
+      {
+        keep(0, {{round_of_root(problem, root)}, {}, 0., {}});
       }
 
       void
