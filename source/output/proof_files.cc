@@ -152,7 +152,7 @@ namespace Debond
         for (const auto &[bond, unused] : terms)
           if (std::isfinite(proof.problem.phi.f[bond].largest_value()))
             undecided.insert(bond);
-        add_node(0, {}, undecided);
+        add_node(0, {{}, -infinity}, undecided);
       }
 
       Json rounds = Json::array(), tree = Json::array();
@@ -164,64 +164,70 @@ namespace Debond
       const std::map<unsigned int, unsigned int> terms;
       std::set<unsigned int>                     undecided;
 
-      /// How a node that has been left out ends: by the last round of the node
-      /// that it is a half of, at the unknown where that was divided.
-      struct Parent
+      /// An entry of the tree with which a node may end, and the bound that it
+      /// gives.
+      struct Ending
       {
-        std::size_t  round;
-        unsigned int unknown;
+        Json   entry;
+        double value;
+
+        void
+        take_if_better(const Ending &other)
+        {
+          if (other.value >= value)
+            *this = other;
+        }
       };
 
+      /// @p ending is the best one from the nodes that this is a part of, and
       /// @p bonds are those with both states.
       void
       add_node(const unsigned int     number,
-               const Parent           parent,
+               Ending                 ending,
                std::set<unsigned int> bonds)
       {
         const auto node = nodes.find(number);
         if (node == nodes.end())
           {
-            if (parent.unknown < n)
-              tree.push_back({"grow", parent.round, parent.unknown});
-            else
-              tree.push_back({"leaf", parent.round});
+            tree.push_back(ending.entry);
             return;
           }
-        // Of its rounds the node ends with the best one, and its halves with
-        // the last, by which it was divided.
-        std::size_t best = parent.round, last = parent.round;
-        double      value = -infinity;
-        for (const ProofRound &round : node->second.rounds)
+        const NodeRecord &found = node->second;
+        std::size_t       last  = 0;
+        for (const ProofRound &round : found.rounds)
           {
             last = rounds.size();
             add_round(round);
-            if (round.value >= value)
-              {
-                value = round.value;
-                best  = last;
-              }
+            ending.take_if_better({{"leaf", last}, round.value});
             if (round.lower.size() == 0)
               continue;
             add_cut(last, round, bonds);
             if ((round.lower.array() > round.upper.array()).any())
               return;
           }
-        if (!node->second.unknown)
+        if (!found.unknown)
           {
-            tree.push_back({"leaf", best});
+            tree.push_back(ending.entry);
             return;
           }
-        const unsigned int unknown = *node->second.unknown;
+        const unsigned int unknown = *found.unknown;
         if (unknown < n)
-          tree.push_back({"split", unknown, node->second.split});
+          tree.push_back({"split", unknown, found.split});
         else
           {
             const auto bond = static_cast<unsigned int>(unknown - n);
             tree.push_back({"states", terms.at(bond)});
             bonds.erase(bond);
           }
-        for (const unsigned int half : node->second.halves)
-          add_node(half, {last, unknown}, bonds);
+        for (const unsigned int half : {0, 1})
+          {
+            Ending of_half = ending;
+            of_half.take_if_better({unknown < n ?
+                                      Json({"grow", last, unknown}) :
+                                      Json({"leaf", last}),
+                                    found.half_bounds[half]});
+            add_node(found.halves[half], of_half, bonds);
+          }
       }
 
       void

@@ -121,7 +121,7 @@ namespace Debond
             // With bonds of several unknowns it is one in the box of the root.
             if (parameters.keeps_record && !problem.phi.bonds.empty())
               keep_root(*node_bound.root(result.upper));
-            keep(0, {{at_point}, {}, 0., {}});
+            keep(0, {{at_point}, {}, 0., {}, {}});
           }
         else if (parameters.maximum_nodes > 0)
           {
@@ -312,15 +312,16 @@ namespace Debond
         node.rounds.insert(node.rounds.end(),
                            found.rounds.begin(),
                            found.rounds.end());
-        node.unknown = found.unknown;
-        node.split   = found.split;
-        node.halves  = found.halves;
+        node.unknown     = found.unknown;
+        node.split       = found.split;
+        node.halves      = found.halves;
+        node.half_bounds = found.half_bounds;
       }
 
       void
       keep_root(const ProofNode &root)
       {
-        keep(0, {{round_of_root(problem, root)}, {}, 0., {}});
+        keep(0, {{round_of_root(problem, root)}, {}, 0., {}, {}});
       }
 
       void
@@ -330,7 +331,8 @@ namespace Debond
              {job.result.rounds,
               job.result.unknown,
               job.result.split,
-              {{n_created + 1, n_created + 2}}});
+              {{n_created + 1, n_created + 2}},
+              job.result.half_bounds});
         if (!job.result.unknown)
           {
             least_left_out = std::min(least_left_out, job.result.least);

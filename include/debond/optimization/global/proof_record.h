@@ -38,6 +38,7 @@ namespace Debond
     std::optional<unsigned int> unknown;
     double                      split;
     std::array<unsigned int, 2> halves; ///< the numbers of both, upper first
+    std::array<double, 2>       half_bounds; ///< by the last round
   };
 
   /// Nodes by their numbers, from 0, the root. Those that are not there have
