@@ -89,21 +89,23 @@ def exact_law(pieces, s):
     return value
 
 
-def exact_energy(S, problem, s):
-    """J(s), at most 2^-200 too large."""
+def exact_energy(S, problem, s, states=None):
+    """J(s), at most 2^-200 too large; of some terms the state can be given."""
     s, upper = [Fraction(v) for v in s], problem["upper"]
     assert all(u is None or v <= Fraction(u) for v, u in zip(s, upper))
     value = Fraction(problem["c_0"])
     for i, row in enumerate(S):
         value += s[i] * (sum(Fraction(float(a)) * v for a, v in zip(row, s)) / 2
                          - Fraction(problem["g"][i]))
-    for term in problem["terms"]:
+    for t, term in enumerate(problem["terms"]):
         if "unknown" in term:
             value += exact_law(term["pieces"], s[term["unknown"]])
         else:
             springs = sum(Fraction(k) * s[i] ** 2 / 2
                           for i, k in zip(term["unknowns"], term["stiffness"]))
-            value += springs if term["energy"] is None else min(springs, Fraction(term["energy"]))
+            left = (states or {}).get(t, HOLDS | (BROKEN if term["energy"] is not None else 0))
+            value += min([springs] * (left & HOLDS > 0) + (
+                [Fraction(term["energy"])] if left & BROKEN else []))
     for entry in problem["friction"]:
         square = Fraction(entry["weight"]) ** 2 * sum(
             (s[i] - Fraction(p)) ** 2 for i, p in zip(entry["unknowns"], entry["place"]))
@@ -196,8 +198,8 @@ class Model:
             value += pair["weight"] * math.hypot(s[i] - p, s[j] - q)
         return value
 
-    def descend(self, s, box, n_sweeps=60):
-        """Coordinate by coordinate; s of the box."""
+    def descend(self, s, box, n_sweeps=60, states=None):
+        """Coordinate by coordinate, in a box; of some terms the state can be given."""
         s = np.array([min(max(v, l), u) for v, (l, u) in zip(s, box)])
         for _ in range(n_sweeps):
             before = s.copy()
@@ -214,7 +216,9 @@ class Model:
                     others = sum(k * s[j] ** 2 / 2. for j, k in zip(unknowns, stiffness) if j != i)
                     k = stiffness[unknowns.index(i)]
                     value, place = least_of(self.pieces[i], c + k, b, *box[i])
-                    values = [(values[0][0] + energy, values[0][1]), (value + others, place)]
+                    left = (states or {}).get(self.term_of[i], HOLDS | BROKEN)
+                    values = [(value + others, place)] * (left & HOLDS > 0) + [
+                        (values[0][0] + energy, values[0][1])] * (left & BROKEN > 0)
                 s[i] = min(values)[1]
             if np.max(np.abs(s - before)) < 1e-14:
                 break
@@ -333,27 +337,42 @@ class Prover:
             self.rounds.append(a_round.data())
         return self.places[a_round]
 
-    def cut(self, box, states, a_round):
-        """The entry and what is left, or None."""
-        n, model = self.model.n, self.model
-        lower, upper, found = [None] * n, [None] * n, []
+    def slab(self, a_round, box, states, i, interval):
+        """Its bound, with growth."""
+        return a_round.bound(box[:i] + [interval] + box[i + 1:], states, i)[0]
 
-        def slab(i, interval):
-            return a_round.bound(box[:i] + [interval] + box[i + 1:], states, i)[0]
-
+    def closed(self, box, states, a_round):
+        """Up to where growth closes what is below of each unknown, and what is above."""
+        lower, upper = [None] * self.model.n, [None] * self.model.n
         for i, (l, u) in enumerate(box):
             size = 1e-3 * (1. + abs(a_round.x[i]))
             places = [a_round.x[i] + sign * size * 2. ** k for sign in (-1, 1) for k in range(16)]
-            places += [end for piece in model.pieces[i] for end in piece[:2] if math.isfinite(end)]
-            places = [v for v in places if l < v < u]
-            low = [v for v in places if slab(i, (l, v)) >= self.target]
-            high = [v for v in places if slab(i, (v, u)) >= self.target]
-            if low:
-                lower[i] = float(max(low))
-                found.append(slab(i, (l, lower[i])))
-            if high:
-                upper[i] = float(min(high))
-                found.append(slab(i, (upper[i], u)))
+            places += [end for piece in self.model.pieces[i] for end in piece[:2]]
+            places = [float(v) for v in places if l < v < u]
+            lower[i] = max((v for v in places if self.slab(a_round, box, states, i, (l, v))
+                            >= self.target), default=None)
+            upper[i] = min((v for v in places if self.slab(a_round, box, states, i, (v, u))
+                            >= self.target), default=None)
+        return lower, upper
+
+    def chain(self, box, states, a_round, lower, upper):
+        """One slab closes as a child of a split."""
+        i = int(self.rng.choice([i for i in range(len(box)) if (lower[i], upper[i]) != (None, None)]))
+        (l, u), place = box[i], upper[i] if lower[i] is None else lower[i]
+        self.tree.append(["split", i, place])
+        for half, is_closed in (((place, u), lower[i] is None), ((l, place), lower[i] is not None)):
+            child = box[:i] + [half] + box[i + 1:]
+            if is_closed:
+                self.close(["grow", self.number(a_round), i], a_round.bound(child, states, i)[0])
+            else:
+                self.node(child, states)
+
+    def cut(self, box, states, a_round, lower, upper):
+        """The entry and what is left, or None."""
+        model, found = self.model, []
+        for i, (l, u) in enumerate(box):
+            found += [] if lower[i] is None else [self.slab(a_round, box, states, i, (l, lower[i]))]
+            found += [] if upper[i] is None else [self.slab(a_round, box, states, i, (upper[i], u))]
         left = [(max(l, -INFINITY if v is None else v), min(u, INFINITY if w is None else w))
                 for (l, u), v, w in zip(box, lower, upper)]
         remaining, lists = dict(states), ([], [])
@@ -390,7 +409,13 @@ class Prover:
         if max(grown)[0] >= self.target:
             self.close(["grow", self.number(a_round), max(grown)[1]], max(grown)[0])
             return
-        cut = self.cut(box, states, a_round) if n_cuts < 3 else None
+        cut = None
+        if n_cuts < 3 and self.rng.random() < 0.8:
+            lower, upper = self.closed(box, states, a_round)
+            if self.rng.random() < 0.3 and any(v is not None for v in lower + upper):
+                self.chain(box, states, a_round, lower, upper)
+                return
+            cut = self.cut(box, states, a_round, lower, upper)
         if cut:
             if cut[0]:
                 self.node(*cut, n_cuts + 1)
@@ -408,7 +433,10 @@ class Prover:
             v = min(max(x[i], l), u)
             gaps.append((a_round.of_unknown(i, (v, v))[0] - a_round.of_unknown(i, box[i])[0],
                          "split", i))
-        _, kind, k = max(gaps)
+        both = [gap for gap in gaps if gap[1] == "states"]
+        gaps = both if both and self.rng.random() < 0.4 else [
+            gap for gap in gaps if gap[0] >= 0.5 * max(gaps)[0]]
+        _, kind, k = gaps[self.rng.integers(len(gaps))]
         self.tree.append([kind, k])
         if kind == "states":
             children = [(box, {**states, k: state}) for state in (BROKEN, HOLDS)]
@@ -424,7 +452,7 @@ class Prover:
 
     def proof(self):
         self.node(*self.model.root)
-        margin = 1e-9 * max(1., abs(self.energy))
+        margin = 1e-9 * max(1., abs(self.energy), abs(self.least))
         return {"state": self.state.tolist(), "interval": [float(self.least - margin),
                                                           float(self.energy + margin)],
                 "rounds": self.rounds, "tree": self.tree}
