@@ -79,36 +79,41 @@ def write(directory, S, problem, proof):
 
 # Exactly, in fractions.
 
+def exact(number):
+    """Numbers of files are doubles, those without a point too."""
+    return number if type(number) is Fraction else Fraction(float(number))
+
+
 def exact_law(pieces, s):
     """Integrated from 0."""
     value, begin = Fraction(0), Fraction(0)
     for curvature, slope, end in pieces:
-        end = s if end is None else max(s, Fraction(end))
-        value += Fraction(curvature) * (end ** 2 - begin ** 2) / 2 + Fraction(slope) * (end - begin)
+        end = s if end is None else max(s, exact(end))
+        value += exact(curvature) * (end ** 2 - begin ** 2) / 2 + exact(slope) * (end - begin)
         begin = end
     return value
 
 
 def exact_energy(S, problem, s, states=None):
     """J(s), at most 2^-200 too large; of some terms the state can be given."""
-    s, upper = [Fraction(v) for v in s], problem["upper"]
-    assert all(u is None or v <= Fraction(u) for v, u in zip(s, upper))
-    value = Fraction(problem["c_0"])
+    s, upper = [exact(v) for v in s], problem["upper"]
+    assert all(u is None or v <= exact(u) for v, u in zip(s, upper))
+    value = exact(problem["c_0"])
     for i, row in enumerate(S):
-        value += s[i] * (sum(Fraction(float(a)) * v for a, v in zip(row, s)) / 2
-                         - Fraction(problem["g"][i]))
+        value += s[i] * (sum(exact(a) * v for a, v in zip(row, s)) / 2
+                         - exact(problem["g"][i]))
     for t, term in enumerate(problem["terms"]):
         if "unknown" in term:
             value += exact_law(term["pieces"], s[term["unknown"]])
         else:
-            springs = sum(Fraction(k) * s[i] ** 2 / 2
+            springs = sum(exact(k) * s[i] ** 2 / 2
                           for i, k in zip(term["unknowns"], term["stiffness"]))
             left = (states or {}).get(t, HOLDS | (BROKEN if term["energy"] is not None else 0))
             value += min([springs] * (left & HOLDS > 0) + (
-                [Fraction(term["energy"])] if left & BROKEN else []))
+                [exact(term["energy"])] if left & BROKEN else []))
     for entry in problem["friction"]:
-        square = Fraction(entry["weight"]) ** 2 * sum(
-            (s[i] - Fraction(p)) ** 2 for i, p in zip(entry["unknowns"], entry["place"]))
+        square = exact(entry["weight"]) ** 2 * sum(
+            (s[i] - exact(p)) ** 2 for i, p in zip(entry["unknowns"], entry["place"]))
         value += Fraction(math.isqrt(math.ceil(square * 4 ** 210)) + 1, 2 ** 210)
     return value
 
