@@ -59,8 +59,8 @@ namespace Debond
     const bool is_euclidean = p.solver.method == SolverMethod::euclidean_bundle;
     const bool is_energy    = p.solver.method == SolverMethod::energy_bundle;
     const bool has_path     = !p.load_path.factors.empty();
-    const bool has_branches = has_path && p.load_path.bonds_heal &&
-                              p.load_path.global_branch != GlobalBranch::none;
+    const bool has_branches =
+      has_path && p.load_path.global_branch != GlobalBranch::none;
     const bool    searches = has_path ? has_branches : p.solver.searches();
     const bool    is_cold  = !p.materials.expands();
     std::ifstream file(

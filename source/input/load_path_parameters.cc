@@ -158,7 +158,7 @@ namespace Debond
     table.bind(
       "Load path/Bonds heal",
       load_path.bonds_heal,
-      "Whether bonds hold again when they come back: false leaves each bond with what it has lost at its largest opening for the rest of the path: one that broke never holds again. Needs nodal, midpoint or gauss N quadrature, whose bonds stay where they are, and leaves out the global branch");
+      "Whether bonds hold again when they come back: false leaves each bond with what it has lost at its largest opening for the rest of the path: one that broke never holds again. Needs nodal, midpoint or gauss N quadrature, whose bonds stay where they are");
     table.bind_choice(
       "Load path/Global branch",
       load_path.global_branch,
@@ -166,7 +166,7 @@ namespace Debond
        {"none", GlobalBranch::none},
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
-      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor, automatic what it finds of it with as much work as the path takes (none with Displacement factors), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor, automatic what it finds of it with as much work as the path takes (none with Displacement factors or Bonds heal = false), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature. With Bonds heal = false it is the energetic path: the minimum at each factor for what its own states before have broken");
     table.bind(
       "Load path/Arc",
       load_path.arc,
@@ -212,6 +212,10 @@ namespace Debond
                          std::to_string(factors.size()),
                        {"Load path/Factors"});
       }
+    // States that break nothing too early are wanted of such paths, and the
+    // energetic path is another one.
+    if (!factors.empty() && !load_path.bonds_heal && !load_path.asks_for_branch)
+      table.derive(branch, "none", "Load path/Bonds heal");
     // The arc follows one factor, while the other one stays.
     const auto vary = [](const std::vector<double> &list) {
       return std::any_of(list.begin(), list.end(), [&](const double factor) {

@@ -221,7 +221,11 @@ namespace Debond
           "needs Law = winkler where bonds shear"},
          {p.load_path.global_branch == GlobalBranch::prove && !breaks_at_once,
           "Load path/Global branch",
-          "needs Law = winkler where bonds shear, to prove it"}},
+          "needs Law = winkler where bonds shear, to prove it"},
+         {p.load_path.global_branch == GlobalBranch::prove && has_mode,
+          "Load path/Global branch",
+          "is for Contact law/Mixed mode = none, if it is prove: with an energy "
+          "that depends on the mode there is no least J"}},
         {tangential},
         table);
     }

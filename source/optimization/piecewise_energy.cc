@@ -191,6 +191,39 @@ namespace Debond
 
 
 
+  PiecewiseEnergy
+  PiecewiseEnergy::after(const double reached) const
+  {
+    if (reached == 0.)
+      return *this;
+    std::vector<EnergyPiece> rest;
+    const unsigned int       m = index(reached);
+    // A secant is a piece more, unless the piece that it cuts ends there.
+    const bool has_secant = !returns_on_a_piece(reached);
+    if (has_secant)
+      rest.push_back({piece_at(0., reached).curvature, 0., reached, ""});
+    for (unsigned int k = m; k < size(); ++k)
+      if (!has_secant || pieces[k].lower < reached)
+        {
+          const Piece &piece = pieces[k];
+          // What decays is told by the slope with which it begins.
+          const double upper = std::min(piece.upper, reached);
+          rest.push_back(
+            {piece.curvature,
+             piece.decay > 0. ? piece.derivative(upper) : piece.slope,
+             piece.lower,
+             "",
+             piece.decay});
+        }
+    PiecewiseEnergy result(rest);
+    // Of the same pieces the last ones are left, so that the secant has the
+    // number of the piece before, if there is one.
+    result.left = left + std::max(size(), result.size()) - result.size();
+    return result;
+  }
+
+
+
   bool
   PiecewiseEnergy::softens() const
   {
@@ -319,8 +352,7 @@ namespace Debond
     // whether a piece is above the others does not change. The constants are
     // made anew, as the function has to be continuous at kinks that have been
     // rounded.
-    PiecewiseEnergy result;
-    result.pieces = pieces;
+    PiecewiseEnergy result = *this;
     for (Piece &piece : result.pieces)
       {
         piece.curvature *= energy / (length * length);

@@ -185,10 +185,12 @@ namespace
     const double M      = law.bond_threshold() > 0. ? law.bond_threshold() : 1.;
     const double energy = std::max(law.value(-4. * M), 1e-300);
     double       below = 0., too_steep = 0., off_secant = 0., off_law = 0.;
-    bool         is_convex = true;
+    double       off_pieces = 0.;
+    bool         is_convex  = true;
     for (const double reached : {0., -0.1 * M, -0.45 * M, -0.83 * M, -2. * M})
       {
-        const double taken = law.value(0., reached);
+        const double          taken = law.value(0., reached);
+        const PiecewiseEnergy after = law.pieces().after(reached);
         for (unsigned int i = 1; i <= 200; ++i)
           {
             const double s = -0.0201 * i * M, value = law.value(s, reached);
@@ -205,7 +207,11 @@ namespace
               raise(off_law, std::abs(value - law.value(s)) / energy);
             const double slope     = law.derivative(s, reached),
                          curvature = law.curvature(s, reached);
-            is_convex              = is_convex && curvature >= 0.;
+            raise(off_pieces,
+                  (std::abs(after.value(s) + taken - value) +
+                   M * std::abs(after[after.index(s)].derivative(s) - slope)) /
+                    energy);
+            is_convex = is_convex && curvature >= 0.;
             // The least curvature that is enough, on a fine grid.
             double needed = std::max(0., law.second_derivative(s, reached));
             for (unsigned int k = 0; k <= 4000; ++k)
@@ -225,6 +231,7 @@ namespace
     check("a flatter one would do", too_steep, 2e-2);
     check("distance to the secant below what was reached", off_secant, 1e-13);
     check("distance to the law beyond", off_law, 0.);
+    check("distance of the pieces with this memory", off_pieces, 1e-13);
   }
 
 

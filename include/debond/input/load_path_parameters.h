@@ -33,7 +33,7 @@ namespace Debond
     bool                  asks_for_branch = false; ///< the scene itself does
 
     /// Says whether bonds return to branches that they have left. Otherwise
-    /// there is no global branch, as states depend on those before.
+    /// states depend on those before, those of the global branch on its own.
     bool bonds_heal = true;
 
     /// Returns the factors of a step, from 0.

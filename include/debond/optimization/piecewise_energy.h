@@ -107,6 +107,20 @@ namespace Debond
       return PiecewiseEnergy({{0., 0., no_end, ""}});
     }
 
+    /// Returns this function where @p reached has been reached, less what was
+    /// taken up for good: piece_at() as a list of pieces. f itself if @p
+    /// reached is 0.
+    PiecewiseEnergy
+    after(const double reached) const;
+
+    /// Returns how many pieces after() has left out, so that piece() + this is
+    /// the number that a piece had before.
+    unsigned int
+    n_left() const
+    {
+      return left;
+    }
+
     /// Returns whether some piece is not above f.
     bool
     softens() const;
@@ -185,6 +199,7 @@ namespace Debond
     connect();
 
     std::vector<Piece> pieces;
+    unsigned int       left = 0; ///< n_left()
   };
 } // namespace Debond
 

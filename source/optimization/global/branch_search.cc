@@ -54,7 +54,7 @@ namespace Debond
         rounding          = state.functional_rounding;
         tried.insert(problem.lumped.state(s));
         for (const PiecewiseEnergy &f : problem.lumped.f)
-          n_pieces = std::max(n_pieces, f.size());
+          n_pieces = std::max(n_pieces, f.size() + f.n_left());
       }
 
       BranchSearchResult
@@ -204,15 +204,22 @@ namespace Debond
         // one.
         Eigen::VectorXd       next = point;
         const Eigen::VectorXd l    = problem.lumped.displacements(point);
-        // Where there are no bonds no piece is to be left.
+        // Where there are no bonds no piece is to be left, and what bonds have
+        // left for good is none of theirs.
+        const auto piece_of = [&](const unsigned int i) {
+          const unsigned int left = f[i].n_left();
+          return left < move.piece && move.piece < f[i].size() + left ?
+                   move.piece - left :
+                   0;
+        };
         for (const unsigned int i : move.down)
-          if (move.piece < f[i].size())
+          if (const unsigned int piece = piece_of(i); piece > 0)
             problem.lumped.set_displacement(
-              i, std::min(l(i), f[i].point_inside(move.piece)), next);
+              i, std::min(l(i), f[i].point_inside(piece)), next);
         for (const unsigned int i : move.up)
-          if (move.piece < f[i].size())
+          if (const unsigned int piece = piece_of(i); piece > 0)
             problem.lumped.set_displacement(
-              i, std::max(l(i), f[i].point_inside(move.piece - 1)), next);
+              i, std::max(l(i), f[i].point_inside(piece - 1)), next);
         next = next.cwiseMin(problem.upper);
         // A state that has been tried leads where it led before.
         const PieceState start = problem.lumped.state(next);

@@ -49,7 +49,7 @@ namespace Debond
     const Eigen::VectorXd l = displacements(s);
     PieceState            result(l.size());
     for (unsigned int i = 0; i < l.size(); ++i)
-      result[i] = piece(i, l).number;
+      result[i] = piece(i, l).number + f[i].n_left();
     return result;
   }
 

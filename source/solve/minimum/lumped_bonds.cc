@@ -8,6 +8,43 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// Gives each bond the memory of its points: that of the least damaged one
+    /// where there are several, which in nodal quadrature are the same.
+    template <int dim>
+    void
+    remember(const AdhesionIntegral<dim> &adhesion, SeparableEnergy &energy)
+    {
+      if (adhesion.memory().reached.empty())
+        return;
+      constexpr double    none = -infinity;
+      std::vector<double> reached(energy.f.size(), none);
+      const auto add = [&](const unsigned int unknown, const double own) {
+        double &of_bond =
+          reached[energy.bonds.empty() ? unknown : energy.bonds[unknown]];
+        of_bond = std::max(of_bond, own);
+      };
+      adhesion.for_each_point(Eigen::VectorXd::Zero(adhesion.n_unknowns()),
+                              [&](const auto &point,
+                                  double,
+                                  const double scaled) {
+                                if (point.bonds.energy == 0.)
+                                  return;
+                                const double own = scaled * point.bonds.length;
+                                for (unsigned int k = 0; k < point.n_nodes; ++k)
+                                  add(point.index[k], own);
+                                for (const auto &part : point.slip)
+                                  add(part.index, own);
+                              });
+      for (std::size_t i = 0; i < reached.size(); ++i)
+        if (reached[i] != none)
+          energy.f[i] = energy.f[i].after(reached[i]);
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<double>
   scales_of_bonds(const AdhesionIntegral<dim>                    &adhesion,
@@ -54,7 +91,10 @@ namespace Debond
           bonds.tail != 1.)
         result.f[i] = energy_of(bonds, weights(i));
     if (!adhesion.shears())
-      return result;
+      {
+        remember(adhesion, result);
+        return result;
+      }
     result.friction                      = adhesion.kinks();
     const ContactBoundary<dim> &boundary = adhesion.contact_boundary();
     result.bonds.resize(weights.size());
@@ -123,6 +163,7 @@ namespace Debond
             bonds.shear = 1.;
           add(vertex, bonds, true, 0);
         }
+    remember(adhesion, result);
     return result;
   }
 

@@ -119,9 +119,6 @@ namespace Debond
                "follows minima that need not be global: in place of "
                "Solver/Prove = true use Load path/Global branch = prove");
       if (problem.load_path.global_branch == GlobalBranch::prove &&
-          !problem.load_path.bonds_heal)
-        refuse("Global branch", "= prove needs Load path/Bonds heal = true");
-      if (problem.load_path.global_branch == GlobalBranch::prove &&
           problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
         refuse("Global branch",
                "= prove needs Contact law/Quadrature = nodal, which gives "

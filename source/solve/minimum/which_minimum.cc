@@ -20,8 +20,8 @@ namespace Debond
     /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
-    /// Up to so many nodes the rounds of the first node of branch and bound take
-    /// less than the solve, and may prove what has been found.
+    /// Up to so many nodes the rounds of the first node of branch and bound
+    /// take less than the solve, and may prove what has been found.
     constexpr unsigned int largest_proof_at_root = 400;
 
     /// The nodes of the coarsest space on which active sets of starts are
@@ -79,6 +79,19 @@ namespace Debond
         result.search_nodes = adhesion.n_nodes();
       }
 
+      /// Returns whether no bond has anything left to lose, so that J is
+      /// convex.
+      bool
+      is_convex() const
+      {
+        return is_sum_over_nodes(adhesion) && !lumped.softens() &&
+               std::all_of(lumped.f.begin(),
+                           lumped.f.end(),
+                           [](const PiecewiseEnergy &f) {
+                             return f.size() == 1;
+                           });
+      }
+
       void
       search()
       {
@@ -128,7 +141,7 @@ namespace Debond
               "boundary, or holds it above the foundation");
             return;
           }
-        const Stage  stage("proof");
+        const Stage              stage("proof");
         BranchAndBoundParameters limits = proof_limits();
         // Nodes of the tree that wait keep their intervals. Branch and bound
         // ends with a valid gap before they take the remaining memory.
@@ -394,17 +407,20 @@ namespace Debond
     WhichMinimum result;
     result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = parameters.searches();
-    // A J without adhesion is convex, and its minimum is the only one; a proof
-    // is for others to check then.
-    const bool is_known = result.kind == MinimumKind::global;
-    if (is_known ? !parameters.proof.keeps_record || s.size() == 0 :
-                   !(searches || parameters.prove))
+    if (s.size() == 0 || !(searches || parameters.prove))
       return result;
 
-    // The search comes first: a good upper value lets branch and bound discard
-    // more nodes.
+    // Without anything that bonds can lose J is convex, and its minimum is the
+    // only one; a proof is for others to check then.
     MinimumSearch<dim> search(
       parameters, adhesion, condensed, interruption, s, result);
+    if (search.is_convex())
+      result.kind = MinimumKind::global;
+    const bool is_known = result.kind == MinimumKind::global;
+    if (is_known && !parameters.proof.keeps_record)
+      return result;
+    // The search comes first: a good upper value lets branch and bound discard
+    // more nodes.
     if (searches && !is_known)
       search.search();
     if (parameters.prove)

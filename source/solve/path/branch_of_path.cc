@@ -80,54 +80,193 @@ namespace Debond
 
 
 
-    /// Enters a point of the global branch at all steps with its factors.
+    /// The states of the branch of one path, which it enters at the steps.
     template <int dim>
-    void
-    enter_point(const CondensedScene<dim> &condensed,
-                const SolveSettings       &settings,
-                const Branch::value_type  &entry,
-                CorrectionSolver          &correction,
-                Answer<dim>               &answer)
+    class BranchStates
     {
-      // A point of the branch is refined and verified as a state of the path
-      // is. Its bonds have no memory, as there is a branch only for bonds that
-      // heal.
-      const auto &[factors, point]      = entry;
-      const AdhesionIntegral<dim> bonds = condensed.bonds(factors);
-      DofVector                   u     = condensed.at(factors).expand(point.s);
-      refine_state(
-        condensed.scene, bonds, factors, correction, u, answer.solution);
-      const VerifiedState<dim> state(condensed.scene, bonds, factors, u);
-      LoadPathState<dim>       global = state.state;
-      const bool is_verified = state.verification.error() <= settings.tolerance;
-      if (is_verified)
-        global.minimum = to_string(point.which.kind);
+    public:
+      BranchStates(const CondensedScene<dim> &condensed,
+                   const SolveSettings       &settings,
+                   const PathTable           &table,
+                   CorrectionSolver          &correction,
+                   Answer<dim>               &answer)
+        : condensed(condensed)
+        , parameters(condensed.scene.parameters().load_path)
+        , settings(settings)
+        , table(table)
+        , correction(correction)
+        , answer(answer)
+      {}
+
+      /// The lowest minima, of bonds that heal.
+      void
+      find_branch(const SolverParameters &limited)
+      {
+        const Branch branch = global_branch(
+          parameters.global_branch,
+          limited,
+          condensed,
+          lowest_states(condensed, answer.path),
+          Interruption::by_signal(),
+          [this](const LoadFactors factors, const BranchPoint &point) {
+            tell(factors,
+                 point.functional + condensed.at(factors).energy_at_zero(),
+                 point.which);
+          });
+        for (const auto &[unused, point] : branch)
+          note(point.which);
+        for (const auto &[factors, point] : branch)
+          enter_point(factors, point);
+      }
+
+      /// The energetic path, of bonds that do not. Its words stay its own,
+      /// since states of the followed path are minima with another memory.
+      void
+      find_energetic_path(const SolverParameters &limited)
+      {
+        std::vector<std::pair<LoadFactors, Eigen::VectorXd>> starts;
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          starts.emplace_back(steps[k].factors(), answer.path.points[k]);
+        energetic_path<dim>(limited,
+                            condensed,
+                            starts,
+                            Interruption::by_signal(),
+                            [this](const unsigned int     k,
+                                   const BranchPoint     &point,
+                                   AdhesionIntegral<dim> &bonds) {
+                              const VerifiedState<dim> state =
+                                state_at(steps[k].factors(), point.s, bonds);
+                              tell(steps[k].factors(),
+                                   state.state.functional,
+                                   point.which);
+                              note(point.which);
+                              enter(state, point.which, steps[k]);
+                              return steps[k].message.empty();
+                            });
+        // The words of later steps depend on the first one without a proof.
+        const auto unproved =
+          std::find_if(steps.begin(), steps.end(), [](const auto &step) {
+            return step.global &&
+                   step.global->minimum != to_string(MinimumKind::global);
+          });
+        if (parameters.global_branch == GlobalBranch::prove &&
+            unproved != steps.end())
+          answer.solution.notes.push_back(
+            location(parameters, *unproved) +
+            "the energetic path is not proved here, and later states of it are "
+            "called best known at most, as they depend on this one");
+      }
+
+      /// What limits of work have left undone is said once for all factors, and
+      /// what else a search or a proof notes once as well.
+      void
+      tell_notes() const
+      {
+        std::vector<std::string> &notes = answer.solution.notes;
+        notes.insert(notes.end(), others.begin(), others.end());
+        if (n_cut > 0)
+          table.section(words("the search had as much work as the path takes, "
+                              "which was not enough at ",
+                              n_cut,
+                              " of ",
+                              n_states,
+                              " factors; Load path/Global branch = search has "
+                              "no limit"));
+      }
+
+    private:
+      const CondensedScene<dim>      &condensed;
+      const LoadPathParameters       &parameters;
+      const SolveSettings            &settings;
+      const PathTable                &table;
+      CorrectionSolver               &correction;
+      Answer<dim>                    &answer;
       std::vector<LoadPathStep<dim>> &steps = answer.path.steps;
-      const double                    allowed =
-        rounding_of_path(steps) +
-        settings.parameters.proof.tolerance * std::abs(global.functional);
-      for (unsigned int k = 0; k < steps.size(); ++k)
-        if (steps[k].factors() == factors)
-          {
-            LoadPathStep<dim> &step = steps[k];
-            step.global             = global;
-            if (point.which.proof_attempted)
-              step.relative_gap = point.which.relative_gap;
-            if (!is_verified && step.message.empty())
-              step.message =
-                location(condensed.scene.parameters().load_path, step) +
-                "global branch: " +
-                state.verification.failure(settings.tolerance, false);
-            // The followed state is this one, or as good: it gets the word of
-            // the search or of the proof.
-            if (step.message.empty() &&
-                step.state.functional <= global.functional + allowed)
-              {
-                answer.path.kinds[k] = point.which.kind;
-                step.state.minimum   = global.minimum;
-              }
-          }
-    }
+
+      unsigned int          n_states = 0, n_cut = 0;
+      std::set<std::string> others;
+
+      void
+      tell(const LoadFactors   factors,
+           const double        functional,
+           const WhichMinimum &which) const
+      {
+        table.row(factors,
+                  functional,
+                  parameters.global_branch == GlobalBranch::prove ?
+                    std::stod(scientific_above(which.relative_gap, 2)) :
+                    which.search_trials,
+                  to_string(which.kind));
+      }
+
+      void
+      note(const WhichMinimum &which)
+      {
+        ++n_states;
+        if (which.is_cut)
+          ++n_cut;
+        else
+          others.insert(which.notes.begin(), which.notes.end());
+      }
+
+      /// The state at @p s, refined and verified as one of the path is. What
+      /// does not heal breaks for good there.
+      VerifiedState<dim>
+      state_at(const LoadFactors      factors,
+               const Eigen::VectorXd &s,
+               AdhesionIntegral<dim> &bonds)
+      {
+        const Scene<dim> &scene = condensed.scene;
+        DofVector         u     = condensed.at(factors).expand(s);
+        refine_state(scene, bonds, factors, correction, u, answer.solution);
+        if (!parameters.bonds_heal)
+          bonds.break_for_good(scene.contact_trace(u));
+        return {scene, bonds, factors, u};
+      }
+
+      void
+      enter(const VerifiedState<dim> &state,
+            const WhichMinimum       &which,
+            LoadPathStep<dim>        &step) const
+      {
+        const bool is_verified =
+          state.verification.error() <= settings.tolerance;
+        step.global = state.state;
+        if (is_verified)
+          step.global->minimum = to_string(which.kind);
+        if (which.proof_attempted)
+          step.relative_gap = which.relative_gap;
+        if (!is_verified && step.message.empty())
+          step.message = location(parameters, step) + "global branch: " +
+                         state.verification.failure(settings.tolerance, false);
+      }
+
+      /// At all steps with its factors.
+      void
+      enter_point(const LoadFactors factors, const BranchPoint &point)
+      {
+        AdhesionIntegral<dim>    bonds = condensed.bonds(factors);
+        const VerifiedState<dim> state = state_at(factors, point.s, bonds);
+        const double             least = state.state.functional;
+        const double             allowed =
+          rounding_of_path(steps) +
+          settings.parameters.proof.tolerance * std::abs(least);
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          if (steps[k].factors() == factors)
+            {
+              LoadPathStep<dim> &step = steps[k];
+              enter(state, point.which, step);
+              // The followed state is this one, or as good: it gets the word of
+              // the search or of the proof.
+              if (step.message.empty() &&
+                  step.state.functional <= least + allowed)
+                {
+                  answer.path.kinds[k] = point.which.kind;
+                  step.state.minimum   = step.global->minimum;
+                }
+            }
+      }
+    };
   } // namespace
 
 
@@ -142,60 +281,30 @@ namespace Debond
   {
     const Stage               stage("global branch");
     const dealii::Timer       timer;
-    const Interruption       &interruption = Interruption::by_signal();
     const LoadPathParameters &parameters =
       condensed.scene.parameters().load_path;
-    Solution &result = answer.solution;
 
-    table.section("global branch");
-    const bool proves = parameters.global_branch == GlobalBranch::prove;
-    table.titles(proves ? "gap" : "states tried");
+    table.section(parameters.bonds_heal ? "global branch" : "energetic path");
+    table.titles(
+      parameters.global_branch == GlobalBranch::prove ? "gap" : "states tried");
     // A search that was not asked for takes no longer than the path. Its work
     // is counted in operations, so that its result does not depend on the
     // machine.
     SolverParameters limited = settings.parameters;
     if (parameters.global_branch == GlobalBranch::automatic)
       limited.search_operations = operations_of(answer);
-    const Branch branch = global_branch(
-      parameters.global_branch,
-      limited,
-      condensed,
-      lowest_states(condensed, answer.path),
-      interruption,
-      [&](const LoadFactors factors, const BranchPoint &point) {
-        table.row(factors,
-                  point.functional + condensed.at(factors).energy_at_zero(),
-                  proves ?
-                    std::stod(scientific_above(point.which.relative_gap, 2)) :
-                    point.which.search_trials,
-                  to_string(point.which.kind));
-      });
-    // What limits of work have left undone is said once for all factors, and
-    // what else a search or a proof notes once as well.
-    unsigned int          n_cut = 0;
-    std::set<std::string> others;
-    for (const auto &[factors, point] : branch)
-      if (point.which.is_cut)
-        ++n_cut;
-      else
-        others.insert(point.which.notes.begin(), point.which.notes.end());
-    result.notes.insert(result.notes.end(), others.begin(), others.end());
-    if (n_cut > 0)
-      table.section(words("the search had as much work as the path takes, "
-                          "which was not enough at ",
-                          n_cut,
-                          " of ",
-                          branch.size(),
-                          " factors; Load path/Global branch = search has no "
-                          "limit"));
-    for (const auto &entry : branch)
-      enter_point(condensed, settings, entry, correction, answer);
-    if (interruption.requested())
+    BranchStates<dim> states(condensed, settings, table, correction, answer);
+    if (parameters.bonds_heal)
+      states.find_branch(limited);
+    else
+      states.find_energetic_path(limited);
+    states.tell_notes();
+    if (Interruption::by_signal().requested())
       interrupt(parameters,
                 answer.path.steps.back(),
                 "the global branch is not complete",
-                result);
-    result.parts["global branch"] = timer.wall_time();
+                answer.solution);
+    answer.solution.parts["global branch"] = timer.wall_time();
   }
 
 

@@ -51,7 +51,7 @@ namespace Debond
         point.which = improve(parameters, factors, point);
         operations_left -= point.which.operations;
         // If nothing is applied or prescribed, no gap either, no energy is
-        // negative.
+        // less than at rest.
         if (scene.scene.problem().load(factors).linfty_norm() == 0.)
           point.which.kind = MinimumKind::global;
       }
@@ -193,5 +193,51 @@ namespace Debond
 
 
 
+  template <int dim>
+  void
+  energetic_path(
+    const SolverParameters                                     &parameters,
+    const CondensedScene<dim>                                  &scene,
+    const std::vector<std::pair<LoadFactors, Eigen::VectorXd>> &starts,
+    const Interruption                                         &interruption,
+    const EnergeticObserver<dim>                               &observer)
+  {
+    // The search is of the scene with the memory of the step that it is at.
+    CondensedScene<dim> at_step = scene;
+    BranchSearch<dim>   search(parameters, at_step, interruption);
+    const bool          proves =
+      scene.scene.parameters().load_path.global_branch == GlobalBranch::prove;
+    bool        is_proved = true; // what has led to this step
+    BranchPoint last      = {starts[0].second, infinity, {}};
+    for (unsigned int k = 0; k < starts.size(); ++k)
+      {
+        // The state before and the one that is given are where the search
+        // begins, from the lower one of what they lead to.
+        const auto &[factors, given] = starts[k];
+        const BranchPoint other      = {given, infinity, {}};
+        BranchPoint       point      = {last.s, infinity, {}};
+        search.start_from(last, factors, point);
+        search.start_from(other, factors, point);
+        search.search(factors, starts.size() - k, point);
+        if (proves)
+          search.prove(factors, point);
+        if (interruption.requested())
+          return;
+        MinimumKind &kind      = point.which.kind;
+        const bool   is_global = kind == MinimumKind::global;
+        if (is_global && !is_proved)
+          kind = MinimumKind::best_known;
+        is_proved                   = is_proved && is_global;
+        AdhesionIntegral<dim> bonds = at_step.bonds(factors);
+        if (!observer(k, point, bonds))
+          return;
+        at_step.memory = bonds.memory();
+        last           = point;
+      }
+  }
+
+
+
   DEBOND_INSTANTIATE(global_branch);
+  DEBOND_INSTANTIATE(energetic_path);
 } // namespace Debond

@@ -47,18 +47,12 @@ namespace Debond
         // A path remembers from step to step the displacement, from which the
         // next minimisation starts; the bonds' memory, what each has reached;
         // and s of all steps, from which the global branch starts. To begin
-        // with the body is at rest, and over a gap bonds may be stretched
-        // beyond what they return from by that alone.
+        // with the body is at rest.
         const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
         progress.u.reinit(unknowns.n_dofs());
-        const Eigen::VectorXd at_rest = unknowns.contact().at_rest();
-        unknowns.contact().add(at_rest, progress.u);
-        if (unknowns.has_gap() && !parameters.bonds_heal)
-          {
-            AdhesionIntegral<dim> bonds = scene.adhesion().at(0.);
-            bonds.break_for_good(at_rest);
-            progress.memory = bonds.memory();
-          }
+        unknowns.contact().add(unknowns.contact().at_rest(), progress.u);
+        if (!parameters.bonds_heal)
+          progress.memory = memory_at_rest(scene);
       }
 
       /// Its members refer to each other.
@@ -121,13 +115,15 @@ namespace Debond
         return !steps.empty() && steps.back().message.empty();
       }
 
-      /// If only bonds hold the body J may fall without end.
+      /// If only bonds hold the body J may fall without end, and with an energy
+      /// that depends on the mode there is no J.
       bool
       has_global_branch() const
       {
         return (solver ? solver->condensed() != nullptr :
                          answer.choice.is_condensed) &&
-               parameters.bonds_heal && scene.adhesion().friction().empty() &&
+               !scene.adhesion().points().depends_on_mode() &&
+               scene.adhesion().friction().empty() &&
                scene.problem().unknowns().is_held_by_supports();
       }
 
@@ -141,7 +137,9 @@ namespace Debond
               interrupt("there is no global branch");
             return;
           }
-        const CondensedScene<dim> condensed_scene = condensed();
+        CondensedScene<dim> condensed_scene = condensed();
+        if (!parameters.bonds_heal)
+          condensed_scene.memory = memory_at_rest(scene);
         enter_global_branch(
           condensed_scene, settings, table, *solver->correction(), answer);
       }
@@ -619,9 +617,9 @@ namespace Debond
     Answer<dim> answer = path.take_answer();
     if (parameters.asks_for_branch && wants_branch && !has_branch)
       answer.solution.notes.push_back(
-        "There is no global branch: it is for bonds that heal, a direct linear "
-        "solver, no friction and bodies that not only bonds and the foundation "
-        "hold.");
+        "There is no global branch: it is for a direct linear solver, no "
+        "friction, no Mixed mode and bodies that not only bonds and the "
+        "foundation hold.");
     return answer;
   }
 

@@ -67,6 +67,20 @@ namespace Debond
 
 
 
+  template <int dim>
+  BondMemory
+  memory_at_rest(const Scene<dim> &scene)
+  {
+    const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+    if (!unknowns.has_gap())
+      return {};
+    AdhesionIntegral<dim> bonds = scene.adhesion().at(0.);
+    bonds.break_for_good(unknowns.contact().at_rest());
+    return bonds.memory();
+  }
+
+
+
   void
   note_breaks(const double                         factor,
               const std::vector<ContactNodeState> &nodes,
@@ -159,6 +173,7 @@ namespace Debond
   DEBOND_INSTANTIATE(interrupt);
   DEBOND_INSTANTIATE(refine_state);
   DEBOND_INSTANTIATE(step_of);
+  DEBOND_INSTANTIATE(memory_at_rest);
   DEBOND_INSTANTIATE_CLASS(VerifiedState);
   DEBOND_INSTANTIATE(load_path_totals);
 } // namespace Debond

@@ -49,6 +49,7 @@ namespace Debond
       return f[i][f[i].index(l(i))];
     }
 
+    /// Of bonds with a memory as those without one count them.
     PieceState
     state(const VectorView &s) const;
 

@@ -14,10 +14,15 @@ namespace Debond
     const Scene<dim>   &scene;
     const Condensation &condensed; ///< under the whole load
 
+    /// What its bonds remember.
+    BondMemory memory = {};
+
     AdhesionIntegral<dim>
     bonds(const LoadFactors factors) const
     {
-      return scene.adhesion().at(factors.displacements);
+      AdhesionIntegral<dim> result = scene.adhesion().at(factors.displacements);
+      result.set_memory(memory);
+      return result;
     }
 
     Condensation

@@ -13,7 +13,9 @@ namespace Debond
    * enters its states, which @p correction refines, at all steps of @p answer.
    * Steps that are as low get the word of the search or of the proof. A branch
    * that was not asked for takes as much work as the path took; if that is not
-   * enough, the @p table says so.
+   * enough, the @p table says so. Of bonds that do not heal, with the memory of
+   * @p condensed to begin with, it is the energetic_path(), whose words are its
+   * own: the followed path has another memory.
    */
   template <int dim>
   void

@@ -37,6 +37,35 @@ namespace Debond
                 const Branch              &start,
                 const Interruption        &interruption,
                 const BranchMonitor       &monitor);
+
+
+
+  /// Called with the number of a step, its point, and the bonds with the memory
+  /// of the steps before, which break for good where it leads to. Returns
+  /// whether there is a next step.
+  template <int dim>
+  using EnergeticObserver = std::function<
+    bool(const unsigned int, const BranchPoint &, AdhesionIntegral<dim> &)>;
+
+  /**
+   * The energetic path of bonds that do not heal: at each of the @p starts, the
+   * factors and any point for each, in their order the lowest minimum that is
+   * known of J with the memory that the steps before have left, which are
+   * those of this path; searches and proofs are as in global_branch(). A
+   * minimum is called global only if all those before are, since it is one for
+   * their memory.
+   *
+   * @p scene has the memory of the body at rest. The path ends early, before
+   * the current step, if @p interruption is requested.
+   */
+  template <int dim>
+  void
+  energetic_path(
+    const SolverParameters                                     &parameters,
+    const CondensedScene<dim>                                  &scene,
+    const std::vector<std::pair<LoadFactors, Eigen::VectorXd>> &starts,
+    const Interruption                                         &interruption,
+    const EnergeticObserver<dim>                               &observer);
 } // namespace Debond
 
 #endif

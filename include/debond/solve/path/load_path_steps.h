@@ -73,6 +73,12 @@ namespace Debond
           const LoadFactors         factors);
 
 
+  /// What bonds that do not heal remember of the body at rest, where over a gap
+  /// they may be stretched beyond what they return from.
+  template <int dim>
+  BondMemory
+  memory_at_rest(const Scene<dim> &scene);
+
   /// Enters in @p breaks, as many as @p nodes or none before the first step,
   /// which bonds have broken in a step to @p factor. Broken are those that have
   /// lost 0.99 of their stiffness; what has healed has not.
