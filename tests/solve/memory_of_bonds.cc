@@ -34,8 +34,7 @@ namespace
       s.head(adhesion.n_nodes()) = -s.head(adhesion.n_nodes()).cwiseAbs();
       return s;
     };
-    double       of_values = 0., of_forces = 0., least_left = 1.;
-    bool         leaves_pieces = false;
+    double       of_values = 0., of_forces = 0., least_left = 1., taken = 0.;
     const double energy =
       adhesion.value(Eigen::VectorXd::Constant(adhesion.n_unknowns(), -1e3));
     for (unsigned int history = 0; history < 40; ++history)
@@ -45,8 +44,7 @@ namespace
           adhesion.break_for_good(draw(0.7));
         NeighbourGraph        graph  = neighbours(adhesion.contact_boundary());
         const SeparableEnergy lumped = lumped_bonds(adhesion, graph);
-        for (const PiecewiseEnergy &f : lumped.f)
-          leaves_pieces = leaves_pieces || f.n_left() > 0;
+        raise(taken, adhesion.dissipated_energy() / energy);
         for (unsigned int k = 0; k < 20; ++k)
           {
             const Eigen::VectorXd s = draw(1.);
@@ -61,7 +59,7 @@ namespace
             least_left = std::min(least_left, adhesion.change(s) / energy);
           }
       }
-    check("pieces are left for good", leaves_pieces);
+    check("bonds break", taken > 0.);
     check("values", of_values, 1e-14);
     check("forces", of_forces, 1e-13);
     check("nothing comes back", -least_left, 1e-15);
@@ -83,7 +81,7 @@ namespace
     const std::string field = "*(1 + 0.3*sin(9*x))";
     const Values      shear =
       body + Values{"Contact law/Tangential displacement=bonded",
-                    "Contact law/Bond shear stiffness=30" + field,
+                    "Contact law/Bond shear stiffness=30",
                     "Contact law/Bond stiffness=69" + field,
                     "Boundary conditions/Clamped boundaries=top"};
     test_lumped_bonds<dim>("winkler", 0.002, body);
@@ -111,11 +109,11 @@ namespace
                            body + Values{"Contact law/Law=curve",
                                          "Contact law/Curve=0:0.1, 0.004:0"});
     test_lumped_bonds<dim>("in shear", 0.002, shear);
-    test_lumped_bonds<dim>(
-      "apart in shear",
-      0.002,
-      shear + Values{"Contact law/Bond failure=separate",
-                     "Contact law/Shear fracture energy=1e-4" + field});
+    test_lumped_bonds<dim>("apart in shear",
+                           0.002,
+                           shear +
+                             Values{"Contact law/Bond failure=separate",
+                                    "Contact law/Shear fracture energy=1e-4"});
   }
 } // namespace
 
