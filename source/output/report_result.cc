@@ -602,16 +602,16 @@ namespace Debond
                   {"above_global_branch", path.above_global},
                   {"largest_excess", path.largest_excess}});
       if (path.compared > 0)
-        record.line("above global branch",
-                    "at ",
-                    path.above_global,
-                    " of ",
-                    path.compared,
-                    " factors",
-                    path.above_global > 0 ? words(", by ",
-                                                  100. * path.largest_excess,
-                                                  " % of |J| at most") :
-                                            "");
+        record.line(
+          load_path.bonds_heal ? "above global branch" : "above energetic path",
+          "at ",
+          path.above_global,
+          " of ",
+          path.compared,
+          " factors",
+          path.above_global > 0 ?
+            words(", by ", 100. * path.largest_excess, " % of |J| at most") :
+            "");
     }
 
 
