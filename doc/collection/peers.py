@@ -49,11 +49,11 @@ class Lifted(Scaled):
     def __init__(self, problem):
         super().__init__(problem)
         first, last = problem.table[:, 0], problem.table[:, -1]
-        if problem.rubs or problem.table.shape[1] > 2 or first[:, 2:4].any() or (
+        if problem.friction or problem.table.shape[1] > 2 or first[:, 2:4].any() or (
                 problem.table[:, 1:, 1:4].any()):
             raise ValueError
         curves = np.zeros((len(first), len(problem.g)))
-        curves[problem.row, problem.at] = first[:, 1]
+        curves[range(len(first)), problem.at] = first[:, 1]
         breaks, scale = np.isfinite(problem.energy), self.unit**2 / self.energy
         self.k = np.vstack([curves, problem.springs[breaks]]) * scale
         self.lost = np.append(last[:, 5], problem.energy[breaks]) / self.energy
