@@ -195,7 +195,7 @@ def compare(problem):
                 s = np.minimum(solve(scaled, start / scaled.unit) * scaled.unit, problem.upper)
                 if np.isfinite(problem.value(s)):
                     found.append((problem.value(s), s))
-        except (ImportError, OSError, TimeoutError, ValueError):
+        except (ImportError, OSError, RuntimeError, ValueError):  # OSError is also of the time
             pass
         if found:
             values = [J for J, _ in found]
