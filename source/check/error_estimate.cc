@@ -584,10 +584,9 @@ namespace Debond
           return own->high.count(boundary.faces[box.second].id) > 0;
         };
         std::vector<std::pair<dealii::BoundingBox<dim>, unsigned int>> near;
-        of_interfaces.query(
-          boost::geometry::index::nearest(point, n_nearest) &&
-            boost::geometry::index::satisfies(is_across),
-          std::back_inserter(near));
+        of_interfaces.query(boost::geometry::index::nearest(point, n_nearest) &&
+                              boost::geometry::index::satisfies(is_across),
+                            std::back_inserter(near));
 
         // Boxes of curved sides overlap: that face is taken which is nearest to
         // the point, and there the coordinates of its foot, those in the

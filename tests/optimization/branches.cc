@@ -236,8 +236,8 @@ namespace
           lost += result.unknown && (s_min(i) < node.lower(i) - 1e-9 ||
                                      s_min(i) > node.upper(i) + 1e-9);
         above += node.bound > minimum + rounding;
-        const Eigen::VectorXd at_minimum  = s_min.cast<double>();
-        const double          certificate = node_bound.bound_at(at_minimum).value;
+        const Eigen::VectorXd at_minimum = s_min.cast<double>();
+        const double certificate = node_bound.bound_at(at_minimum).value;
         above += certificate > minimum + rounding;
         certified += certificate > minimum - tolerance;
 
