@@ -39,7 +39,7 @@ def of_curve(pieces, s):
 
 def exact_J(folder, state):
     """As doc/reference/proofs.md says it."""
-    data, S = json.loads((folder / "problem.json").read_text()), load.load(folder).S
+    data, S = json.loads((folder / "problem.json").read_text()), load.Problem(folder).S
     s = [exact(x) for x in state]
     total = exact(data["c_0"]) + sum(x * (sum(exact(a) * y for a, y in zip(row, s)) / 2 - exact(b))
                                      for x, row, b in zip(s, S.tolist(), data["g"]))
@@ -56,7 +56,7 @@ def exact_J(folder, state):
 
 
 def check_loader(folder):
-    problem, result = load.load(folder), json.loads((folder / "result.json").read_text())
+    problem, result = load.Problem(folder), json.loads((folder / "result.json").read_text())
     J, s = exact_J(folder, result["state"]), np.array(result["state"])
     # Of slender bodies parts of J are far larger than J, and bring their rounding.
     rounding = 1e-12 * abs(float(J)) + 1e-15 * (np.abs(s) @ np.abs(problem.S) @ np.abs(s))
@@ -96,7 +96,7 @@ for name in "patches-12", "benchmark-40-690", "shear-common":
     scenes.section(name + ", others")
     folder = SOURCE / "doc" / "collection" / name
     least = json.loads((folder / "result.json").read_text())["J"]
-    for peer in peers.compare(load.load(folder)):
+    for peer in peers.compare(load.Problem(folder)):
         scenes.check(peer.name, peer.best >= least - 1e-9 * abs(least), peer.best)
     scenes.close(peer.name, peer.best, least, 1e-9)
 scenes.end()
