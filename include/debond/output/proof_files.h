@@ -4,6 +4,7 @@
 
 #include <debond/optimization/global/proof_record.h>
 
+#include <array>
 #include <string>
 
 namespace Debond
