@@ -94,7 +94,7 @@ namespace Debond
         : parameters(parameters)
         , problem(problem)
         , n(static_cast<unsigned int>(problem.g.size()))
-        , node_bound(problem)
+        , node_bound(problem, parameters.rounds_of_root)
         , least_left_out(infinity)
       {
         result.upper = infinity;

@@ -11,9 +11,8 @@ namespace Debond
     /// first relaxation of a node. What is left has to shrink its box.
     constexpr double first_share = 0.5;
 
-    /// Relaxations of a node, and of the first.
-    constexpr unsigned int n_rounds      = 6;
-    constexpr unsigned int n_root_rounds = 30;
+    /// Relaxations of a node but the root.
+    constexpr unsigned int n_rounds = 6;
 
     /// The parameter mu of raise_bound, as a part of what is left to prove per
     /// unknown. Smaller ones leave too little to shrink the box.
@@ -431,7 +430,7 @@ namespace Debond
                    const double tolerance) const
   {
     return Relaxations(S, g, phi, node)
-      .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
+      .run(best_value, tolerance, node.number == 0 ? rounds_of_root : n_rounds);
   }
 
 

@@ -20,9 +20,9 @@ namespace Debond
     /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
-    /// Up to so many nodes the rounds of the first node of branch and bound
+    /// Up to so many nodes some rounds of the first node of branch and bound
     /// take less than the solve, and may prove what has been found.
-    constexpr unsigned int largest_proof_at_root = 400;
+    constexpr unsigned int largest_proof_at_root = 400, rounds_at_root = 8;
 
     /// The nodes of the coarsest space on which active sets of starts are
     /// guessed.
@@ -327,6 +327,7 @@ namespace Debond
           return false;
         BranchAndBoundParameters limits = proof_limits();
         limits.maximum_nodes            = maximum_nodes;
+        limits.rounds_of_root           = rounds_at_root;
         const BranchAndBoundResult proof =
           branch_and_bound(limits, lumped_problem(), s);
         if (proof.status != ProofStatus::proved)

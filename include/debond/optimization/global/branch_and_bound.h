@@ -15,6 +15,8 @@ namespace Debond
     /// With 0 there is only the bound at the start, NodeBound::bound_at().
     unsigned int maximum_nodes = 1000000;
 
+    unsigned int rounds_of_root = 30; ///< relaxations of the first node
+
     double maximum_seconds = infinity;
 
     /// For the open nodes.

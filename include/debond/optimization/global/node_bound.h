@@ -2,8 +2,8 @@
 #ifndef debond_optimization_global_node_bound_h
 #define debond_optimization_global_node_bound_h
 
+#include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/envelope_relaxation.h>
-#include <debond/optimization/global/proof_record.h>
 
 #include <array>
 
@@ -73,12 +73,16 @@ namespace Debond
   class NodeBound
   {
   public:
-    NodeBound(const SeparableProblem &problem)
+    /// The root has at most so many relaxations.
+    NodeBound(const SeparableProblem &problem,
+              const unsigned int      rounds_of_root =
+                BranchAndBoundParameters().rounds_of_root)
       : phi(problem.phi)
       , n(static_cast<unsigned int>(problem.g.size()))
       , S(problem.S)
       , g(problem.g)
       , upper(problem.upper)
+      , rounds_of_root(rounds_of_root)
     {}
 
     /// The box in which points are not above @p best_value; nothing if S is not
@@ -111,6 +115,7 @@ namespace Debond
     const unsigned int     n;
     Eigen::MatrixXd        S;
     Eigen::VectorXd        g, upper;
+    const unsigned int     rounds_of_root;
   };
 } // namespace Debond
 
