@@ -340,14 +340,24 @@ def random_scene(k):
             f"Shear fracture energy={a * M * M * draw.uniform(0.1, 1.5)}")]][k % 7]]
 
 
+# Proofs of these take several nodes.
+DIVIDED = {"split": ["Cells=80, 8", "Bond stiffness=690"],
+           "states": ["Cells=20, 4", "Bond stiffness=2000", "Tangential displacement=bonded",
+                      "Bond shear stiffness=2000"]}
+
+
 def check_scenes(base_scene, n):
-    """Proofs of random scenes hold the J that is found."""
-    for k in range(n):
-        (directory / f"{k}.prm").write_text(scene_text(base_scene, [
-            *NO_PICTURES, *random_scene(k), "Method=automatic", "Prove=true", "Output/Proof=true",
-            "Solver/Proof/Maximum time=20", f"Output/Directory=proof-{k}"]))
-    result = scenes.run(*(f"{k}.prm" for k in range(n)))
+    """Proofs of random scenes, and of two that are divided, hold the J that is found."""
+    entries = {**DIVIDED, **{str(k): random_scene(k) for k in range(n)}}
+    for name, own in entries.items():
+        (directory / f"{name}.prm").write_text(scene_text(base_scene, [
+            *NO_PICTURES, *own, "Method=automatic", "Prove=true", "Output/Proof=true",
+            "Solver/Proof/Maximum time=20", f"Output/Directory=proof-{name}"]))
+    result = scenes.run(*(f"{name}.prm" for name in entries))
     scenes.check("scenes run", result.returncode == 0, result.stderr)
+    for kind in DIVIDED:
+        tree = json.loads((directory / f"proof-{kind}" / "proof.json").read_text())["tree"]
+        scenes.check(f"the tree has {kind}", any(entry[0] == kind for entry in tree))
     proved = [path.parent for path in directory.glob("proof-*/proof.json")]
     for output in proved:
         found, said = Checker().run(output)
