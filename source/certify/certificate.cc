@@ -648,6 +648,9 @@ namespace Debond
     certificate.sides = std::move(bound.sides);
     certificate.lengths =
       certified_lengths(certificate.sides, laws, scene->law());
+    if (proof.keeps_record)
+      certificate.proof = certificate_proof(
+        equilibrium, fields, displacement, laws, trace_constants, bound.stages);
   }
 
 

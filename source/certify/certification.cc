@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/atomic_file.h>
 #include <debond/base/instantiate.h>
 #include <debond/base/processes.h>
 #include <debond/certify/certification.h>
@@ -379,7 +380,16 @@ namespace Debond
   Certification<dim>::files(const OutputParameters &output,
                             const Scene<dim>       &scene) const
   {
-    return {{"certified_sides.csv",
+    return {{"certificate_proof.json",
+             [&]() { return certificate && !certificate->proof.is_null(); },
+             [&](const std::string &path) {
+               auto proof        = certificate->proof;
+               proof["interval"] = {certificate->lower, certificate->upper};
+               write_atomically(path, [&](std::ostream &out) {
+                 out << proof << '\n';
+               });
+             }},
+            {"certified_sides.csv",
              [&]() {
                return output.contact_profile && certificate &&
                       !certificate->sides.empty();

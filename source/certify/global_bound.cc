@@ -45,6 +45,10 @@ namespace Debond
 
     constexpr double least_gain = 0.05;
 
+    /// By how much, relative to J, displacements with recorded ranges may be
+    /// above the upper number.
+    constexpr double margin_of_record = 1e-6;
+
     /// The part that another one may save of what the sides lose.
     constexpr double part_of_losses = 0.5;
 
@@ -188,6 +192,8 @@ namespace Debond
       // what elimination may have lost is taken off. Without a bound of the
       // tree there is none of J.
       known.nodes += bound.nodes;
+      if (proof.keeps_record)
+        known.stages.push_back({problem, bound.record, {}});
       const double lower =
         bound.status == ProofStatus::no_bound ?
           -infinity :
@@ -211,7 +217,16 @@ namespace Debond
     void
     StagedBounds::look(const bool is_quick)
     {
-      shrink_ranges(*problem, upper, is_quick, interruption, known.sides);
+      ProofRecord *record = nullptr;
+      for (BoundStage &stage : known.stages)
+        if (stage.problem == problem)
+          record = &stage.ranges.emplace_back();
+      // Those who check a record have to find no more than what was found here,
+      // with other rounding.
+      const double margin =
+        record != nullptr ? margin_of_record * std::abs(upper) : 0.;
+      shrink_ranges(
+        *problem, upper + margin, is_quick, interruption, known.sides, record);
     }
 
 

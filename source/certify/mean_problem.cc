@@ -52,6 +52,7 @@ namespace Debond
       std::optional<Quadratic> quadratic;
       PiecewiseEnergy          minimum;
       double                   constant = 0.;
+      unsigned int             first, last; ///< of those that are left
     };
 
 
@@ -74,14 +75,16 @@ namespace Debond
         ++first;
       const PiecewiseEnergy::Piece &nearest  = whole[first];
       const auto                    in_whole = [&]() -> LawInRange {
-        return {{}, whole.scaled(factor), 0.};
+        return {{}, whole.scaled(factor), 0., 0, whole.size() - 1};
       };
       if (first == last)
         return {Quadratic{factor * nearest.curvature,
                           factor * nearest.slope,
                           factor * static_cast<double>(nearest.constant)},
                 PiecewiseEnergy::zero(),
-                0.};
+                0.,
+                first,
+                last};
       // Nothing is outside of the range.
       if (first == 0 && last + 1 == whole.size())
         return in_whole();
@@ -95,7 +98,9 @@ namespace Debond
         {
           return {{},
                   PiecewiseEnergy(pieces),
-                  factor * static_cast<double>(nearest.constant)};
+                  factor * static_cast<double>(nearest.constant),
+                  first,
+                  last};
         }
       catch (const std::invalid_argument &)
         {
@@ -316,6 +321,7 @@ namespace Debond
             quadratic = Quadratic{length * piece.curvature,
                                   length * piece.slope,
                                   length * static_cast<double>(piece.constant)};
+            result.laws.push_back({piece});
             // c/2 (m^2 + k^2/3) |I|; the part of m^2 follows below.
             A(n + i, n + i) += length * piece.curvature / 3.;
           }
@@ -324,8 +330,11 @@ namespace Debond
             // -|I| D k^2/6. If the rounded law has one piece in the range of m,
             // that is quadratic, too.
             A(n + i, n + i) -= length * D[i] / 3.;
-            const LawInRange own =
-              law_in_range(rounded.minimum(), ranges[i].mean, length);
+            const PiecewiseEnergy whole = rounded.minimum();
+            const LawInRange own = law_in_range(whole, ranges[i].mean, length);
+            result.laws.emplace_back();
+            for (unsigned int k = own.first; k <= own.last; ++k)
+              result.laws.back().push_back(whole[k]);
             quadratic = own.quadratic;
             if (!quadratic)
               {

@@ -16,10 +16,10 @@ namespace Debond
     /// Returns the ranges of displacements of a node whose functional of the
     /// means is at most @p upper; nothing if there are none.
     std::optional<std::vector<CertifiedSide>>
-    ranges_of_node(const MeanProblem &problem,
-                   const NodeBound   &bound,
-                   const ProofNode   &node,
-                   const double       upper)
+    ranges_of_node(const MeanProblem           &problem,
+                   const std::vector<NodeBall> &balls,
+                   const ProofNode             &node,
+                   const double                 upper)
     {
       const unsigned int n = problem.n_sides();
       const unsigned int n_kept =
@@ -51,7 +51,7 @@ namespace Debond
           of_mean(side)           = problem.inverse_in_others(i, i);
           mixed(side) = problem.inverse_in_others(i, n_eliminated + side);
         }
-      for (const NodeBall &ball : bound.balls(node))
+      for (const NodeBall &ball : balls)
         {
           if (ball.value > upper)
             return {};
@@ -136,27 +136,32 @@ namespace Debond
                 const double                upper,
                 const bool                  is_quick,
                 const Interruption         &interruption,
-                std::vector<CertifiedSide> &ranges)
+                std::vector<CertifiedSide> &ranges,
+                ProofRecord *const          record)
   {
     // In each box that is not excluded the functional grows quadratically about
     // its relaxed minimum, so that points with J <= U are in an ellipsoid
     // around it. More boxes give smaller ellipsoids, and their union is the
     // range. J <= U means that the functional of s is at most U less the
     // constant, where the constant may be too large by its rounding.
-    const double           best = upper - problem.constant + problem.rounding;
-    const NodeBound        bound({problem.S,
-                                  problem.g,
-                                  Eigen::VectorXd::Zero(problem.g.size()),
-                                  *problem.phi});
-    std::vector<ProofNode> open;
+    const double    best = upper - problem.constant + problem.rounding;
+    const NodeBound bound({problem.S,
+                           problem.g,
+                           Eigen::VectorXd::Zero(problem.g.size()),
+                           *problem.phi});
+    // With their numbers in the record.
+    std::vector<std::pair<ProofNode, unsigned int>> open;
+    unsigned int                                    n_recorded = 0;
     if (auto root = bound.root(best))
       {
+        if (record != nullptr)
+          (*record)[0].rounds = {bound.round_of_root(*root)};
         if (!cut(*root, problem, ranges))
           return;
         // The root then has as few relaxations as later nodes.
         if (is_quick)
           root->number = 1;
-        open.push_back(std::move(*root));
+        open.emplace_back(std::move(*root), n_recorded++);
       }
     else
       return;
@@ -169,26 +174,41 @@ namespace Debond
       {
         if (interruption.requested())
           return;
-        ProofNode node = std::move(open.back());
+        auto [node, number] = std::move(open.back());
         open.pop_back();
         NodeResult result;
+        NodeRecord found;
         // Once there are enough boxes the open ones are taken as they are.
         if (nodes < n_nodes)
           {
             result = bound.bound(node, best, 0.);
-            if (!result.unknown && result.least >= best)
-              continue;
+            found  = {result.rounds, result.unknown, result.split, {}, {}};
           }
-        if (!result.unknown)
+        if (result.unknown)
+          // The lower half is taken next, as it is the last one that is
+          // appended.
+          for (ProofNode &half : halves(node, result))
+            {
+              found.halves[n_recorded % 2 == 0] = n_recorded;
+              open.emplace_back(std::move(half), n_recorded++);
+            }
+        else if (nodes >= n_nodes || result.least < best)
           {
-            if (const auto own = ranges_of_node(problem, bound, node, best))
+            const std::vector<NodeBall> balls = bound.balls(node);
+            for (const NodeBall &ball : balls)
+              found.rounds.push_back({ball.D, ball.x, {}, ball.value});
+            if (const auto own = ranges_of_node(problem, balls, node, best))
               for (unsigned int i = 0; i < ranges.size(); ++i)
                 hulls[i].combine(hull, (*own)[i]);
-            continue;
           }
-        // The lower half is taken next, as it is the last one that is appended.
-        for (ProofNode &half : halves(node, result))
-          open.push_back(std::move(half));
+        if (record != nullptr)
+          {
+            NodeRecord &kept = (*record)[number];
+            found.rounds.insert(found.rounds.begin(),
+                                kept.rounds.begin(),
+                                kept.rounds.end());
+            kept = found;
+          }
       }
     for (unsigned int i = 0; i < ranges.size(); ++i)
       // If there is none at all the ranges are left as they are.

@@ -405,10 +405,6 @@ namespace Debond
     // entry that is wrong itself.
     check_solver(p.solver, table);
     p.solver.proof.keeps_record = p.output.proof;
-    if (p.output.proof && !p.solver.prove)
-      table.reject("Output/Proof",
-                   "needs Solver/Prove = true",
-                   {"Solver/Prove"});
     check_boundaries(p, table);
     // Without a body there is an error already.
     if (p.body)

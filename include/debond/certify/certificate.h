@@ -2,7 +2,7 @@
 #ifndef debond_certify_certificate_h
 #define debond_certify_certificate_h
 
-#include <debond/certify/global_bound.h>
+#include <debond/certify/certificate_file.h>
 #include <debond/solve/scene/scene.h>
 
 namespace Debond
@@ -74,6 +74,9 @@ namespace Debond
     /// `upper`; empty unless the bound is for bonds that may break anywhere.
     std::vector<CertifiedSide>   sides;
     std::vector<CertifiedLength> lengths;
+
+    /// certificate_proof(); null without.
+    nlohmann::ordered_json proof;
 
     /// (upper - lower) / |upper|
     double

@@ -8,6 +8,17 @@
 
 namespace Debond
 {
+  /// A problem of theorem 2 and what was proved of it.
+  struct BoundStage
+  {
+    std::shared_ptr<const MeanProblem> problem;
+
+    ProofRecord              bound;
+    std::vector<ProofRecord> ranges;
+  };
+
+
+
   struct GlobalBound
   {
     double lower = -infinity;
@@ -25,6 +36,9 @@ namespace Debond
     /// The losses of the sides where the best bound is the least; empty if
     /// there is none.
     std::vector<double> losses;
+
+    /// If BranchAndBoundParameters::keeps_record.
+    std::vector<BoundStage> stages = {};
   };
 
 

@@ -26,6 +26,10 @@ namespace Debond
     std::vector<double>                      shifts;
     std::vector<std::optional<unsigned int>> pieces;
 
+    /// What stands for j_1 on each side, but for constants: of the mean, or of
+    /// p where a piece of the law is certain.
+    std::vector<std::vector<PiecewiseEnergy::Piece>> laws;
+
     std::vector<unsigned int> kept; ///< sides of s
     std::vector<unsigned int> eliminated;
 

@@ -9,13 +9,15 @@ namespace Debond
   /// Shrinks @p ranges of displacements with J at most @p upper, one of each
   /// contact side, to where these are by theorem 2, with at most 32 boxes; if
   /// @p is_quick with 4 that are bounded less well. If @p interruption says no
-  /// they are left as they are by then.
+  /// they are left as they are by then. @p record gets what shows it; may be
+  /// null.
   void
   shrink_ranges(const MeanProblem          &problem,
                 const double                upper,
                 const bool                  is_quick,
                 const Interruption         &interruption,
-                std::vector<CertifiedSide> &ranges);
+                std::vector<CertifiedSide> &ranges,
+                ProofRecord *const          record = nullptr);
 } // namespace Debond
 
 #endif

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/processes.h>
-#include <debond/base/tolerances.h>
 #include <debond/optimization/global/bond_bound.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <future>
@@ -34,48 +32,6 @@ namespace Debond
       Eigen::VectorXd s;
       double          value = infinity;
     };
-
-
-
-    /// Steps of iterative refinement in extended precision.
-    constexpr unsigned int refinements = 3;
-
-
-
-    /// What the box of the root follows from.
-    ProofRound
-    round_of_root(const SeparableProblem &problem, const ProofNode &root)
-    {
-      // Without convexity of its own an unknown that nothing holds has no least
-      // value on a half-line. What is taken from S for this has to change the
-      // diagonal of its inverse, which makes the box, by less than what the box
-      // is rounded outwards.
-      const MatrixView &S       = problem.S;
-      const auto        inverse = safe_inverse(S);
-      double            largest = 0.;
-      for (Eigen::Index i = 0; inverse && i < S.rows(); ++i)
-        largest = std::max(largest,
-                           inverse->col(i).cwiseAbs2().dot(S.diagonal()) /
-                             (*inverse)(i, i));
-      // A residual d of x costs d^2 / (2 D), which is much for the small D of a
-      // matrix that is nearly singular: x has to be right to its last digit.
-      using LongVector  = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-      Eigen::VectorXd x = root.x;
-      for (unsigned int step = 0; inverse && step < refinements; ++step)
-        {
-          const LongVector rest = problem.g.cast<long double>() -
-                                  S.cast<long double>() * x.cast<long double>();
-          x += *inverse * rest.cast<double>();
-        }
-      return {std::min(Tolerance::floor_at_point,
-                       0.25 * Tolerance::outwards / largest) *
-                S.diagonal(),
-              x,
-              {},
-              -infinity,
-              root.lower,
-              root.upper};
-    }
 
 
 
@@ -321,7 +277,7 @@ namespace Debond
       void
       keep_root(const ProofNode &root)
       {
-        keep(0, {{round_of_root(problem, root)}, {}, 0., {}, {}});
+        keep(0, {{node_bound.round_of_root(root)}, {}, 0., {}, {}});
       }
 
       void

@@ -14,6 +14,9 @@ namespace Debond
     /// Relaxations of a node but the root.
     constexpr unsigned int n_rounds = 6;
 
+    /// Steps of iterative refinement in extended precision.
+    constexpr unsigned int refinements = 3;
+
     /// The parameter mu of raise_bound, as a part of what is left to prove per
     /// unknown. Smaller ones leave too little to shrink the box.
     constexpr double barrier = 1.;
@@ -133,7 +136,10 @@ namespace Debond
         if (!set_up(is_first))
           return {};
         minimise_relaxation(problem, envelopes, node.x);
-        return NodeBall{LowerBound(problem, node.x).value, node.x, inverse};
+        return NodeBall{LowerBound(problem, node.x).value,
+                        node.x,
+                        inverse,
+                        S.diagonal() - problem.A.diagonal()};
       }
 
     private:
@@ -382,6 +388,41 @@ namespace Debond
     if (!node.lower.allFinite())
       return {};
     return node;
+  }
+
+
+
+  ProofRound
+  NodeBound::round_of_root(const ProofNode &root) const
+  {
+    // Without convexity of its own an unknown that nothing holds has no least
+    // value on a half-line. What is taken from S for this has to change the
+    // diagonal of its inverse, which makes the box, by less than what the box
+    // is rounded outwards.
+    const auto inverse = safe_inverse(S);
+    double     largest = 0.;
+    for (unsigned int i = 0; inverse && i < n; ++i)
+      largest = std::max(largest,
+                         inverse->col(i).cwiseAbs2().dot(S.diagonal()) /
+                           (*inverse)(i, i));
+    // A residual d of x costs d^2 / (2 D), which is much for the small D of a
+    // matrix that is nearly singular: x has to be right to its last digit.
+    using LongVector  = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+    Eigen::VectorXd x = root.x;
+    for (unsigned int step = 0; inverse && step < refinements; ++step)
+      {
+        const LongVector rest =
+          g.cast<long double>() - S.cast<long double>() * x.cast<long double>();
+        x += *inverse * rest.cast<double>();
+      }
+    return {std::min(Tolerance::floor_at_point,
+                     0.25 * Tolerance::outwards / largest) *
+              S.diagonal(),
+            x,
+            {},
+            -infinity,
+            root.lower,
+            root.upper};
   }
 
 

@@ -52,6 +52,7 @@ namespace Debond
     double          value;
     Eigen::VectorXd x;
     Eigen::MatrixXd inverse; ///< of A
+    Eigen::VectorXd D;       ///< what A has less than S on its diagonal
   };
 
 
@@ -89,6 +90,10 @@ namespace Debond
     /// safely positive definite.
     std::optional<ProofNode>
     root(const double best_value) const;
+
+    /// What the box of the root follows from.
+    ProofRound
+    round_of_root(const ProofNode &root) const;
 
     /// A lower bound of the functional, the value of the round, that is close
     /// to its value at @p s if the convexity with which the terms of Phi are
