@@ -45,9 +45,9 @@ namespace Debond
 
     constexpr double least_gain = 0.05;
 
-    /// By how much, relative to J, displacements with recorded ranges may be
-    /// above the upper number.
-    constexpr double margin_of_record = 1e-6;
+    /// By how much displacements with recorded ranges may be above the upper
+    /// number, relative to the interval.
+    constexpr double margin_of_record = 1e-3;
 
     /// The part that another one may save of what the sides lose.
     constexpr double part_of_losses = 0.5;
@@ -224,7 +224,10 @@ namespace Debond
       // Those who check a record have to find no more than what was found here,
       // with other rounding.
       const double margin =
-        record != nullptr ? margin_of_record * std::abs(upper) : 0.;
+        record == nullptr ?
+          0. :
+          margin_of_record *
+            std::min(upper - known.lower, first_interval * std::abs(upper));
       shrink_ranges(
         *problem, upper + margin, is_quick, interruption, known.sides, record);
     }

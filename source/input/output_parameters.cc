@@ -40,7 +40,7 @@ namespace Debond
     bind_switch(
       "Proof",
       output.proof,
-      "Write what Solver/Prove has proved: S.mtx, problem.json and proof.json, which scripts/check_proof checks");
+      "Write what Solver/Prove has proved, S.mtx, problem.json and proof.json, which scripts/check_proof checks, and certificate_proof.json of a global certificate for scripts/check_certificate");
     bind_switch(
       "Load path contact VTU",
       output.path_contact_vtu,
