@@ -182,7 +182,7 @@ namespace Debond
         if (nodes < n_nodes)
           {
             result = bound.bound(node, best, 0.);
-            found  = {result.rounds, result.unknown, result.split, {}, {}};
+            found  = {result.rounds, result.unknown, result.split};
           }
         if (result.unknown)
           // The lower half is taken next, as it is the last one that is

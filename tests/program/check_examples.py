@@ -40,7 +40,7 @@ ROUNDING = 1e-8
 def equal(shown, printed):
     """Whether two words are equal, as numbers to the digits of the first."""
     shown_number, printed_number = (
-        NUMBER.match(word.strip("(),")) for word in (shown, printed))
+        NUMBER.match(word.strip("(),[]")) for word in (shown, printed))
     if not (shown_number and printed_number):
         return shown == printed
     text, x, y = (shown_number.group(), float(shown_number.group()),
@@ -72,7 +72,7 @@ class Document:
         self.output = ""
         self.mark = None
         self.faults = []
-        for name in ("prm", "doc"):
+        for name in ("prm", "doc", "scripts"):
             (directory / name).symlink_to(root / name)
 
     def fault(self, number, text):

@@ -77,7 +77,7 @@ namespace Debond
             // With bonds of several unknowns it is one in the box of the root.
             if (parameters.keeps_record && !problem.phi.bonds.empty())
               keep_root(*node_bound.root(result.upper));
-            keep(0, {{at_point}, {}, 0., {}, {}});
+            keep(0, {{at_point}});
           }
         else if (parameters.maximum_nodes > 0)
           {
@@ -277,7 +277,7 @@ namespace Debond
       void
       keep_root(const ProofNode &root)
       {
-        keep(0, {{node_bound.round_of_root(root)}, {}, 0., {}, {}});
+        keep(0, {{node_bound.round_of_root(root)}});
       }
 
       void

@@ -33,8 +33,8 @@ namespace Debond
     /// The unknown to branch on next, where, and bounds of the upper and the
     /// lower half.
     std::optional<unsigned int> unknown;
-    double                      split = 0.;
-    std::array<double, 2>       half_bounds;
+    double                      split       = 0.;
+    std::array<double, 2>       half_bounds = {};
 
     /// If there is none, the node is done: it has no value below this.
     double least;

@@ -36,10 +36,10 @@ namespace Debond
   struct NodeRecord
   {
     std::vector<ProofRound>     rounds;
-    std::optional<unsigned int> unknown;
-    double                      split;
-    std::array<unsigned int, 2> halves; ///< the numbers of both, upper first
-    std::array<double, 2>       half_bounds; ///< by the last round
+    std::optional<unsigned int> unknown     = {};
+    double                      split       = 0.;
+    std::array<unsigned int, 2> halves      = {}; ///< numbers, upper half first
+    std::array<double, 2>       half_bounds = {}; ///< by the last round
   };
 
   /// Nodes by their numbers, from 0, the root. Those that are not there have
