@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/certify/certificate_file.h>
+#include <debond/output/proof_files.h>
 
 namespace Debond
 {
   namespace
   {
     using Json = nlohmann::ordered_json;
-    using Cell = EquilibriumMesh<2>::Cell;
-
-
-
-    /// Numbers in the fewest digits that give them back; null is infinite.
-    Json
-    json_of(const VectorView &numbers)
-    {
-      Json result = Json::array();
-      for (const double number : numbers)
-        result.push_back(std::isfinite(number) ? Json(number) : Json());
-      return result;
-    }
 
 
 
@@ -133,15 +121,18 @@ namespace Debond
       for (const ProofRound &round : node->second.rounds)
         {
           const std::size_t last = rounds.size();
-          rounds.push_back({{"D", json_of(round.D)}, {"x", json_of(round.x)}});
+          rounds.push_back(
+            {{"D", json_numbers(round.D)}, {"x", json_numbers(round.x)}});
           if (round.lower.size() == 0)
             {
               end.push_back(last);
               continue;
             }
           end = {"leaf", last};
-          tree.push_back(
-            {"cut", last, json_of(round.lower), json_of(round.upper)});
+          tree.push_back({"cut",
+                          last,
+                          json_numbers(round.lower),
+                          json_numbers(round.upper)});
           if ((round.lower.array() > round.upper.array()).any())
             return;
         }

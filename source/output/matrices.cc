@@ -143,6 +143,19 @@ namespace Debond
 
 
 
+    /// Returns whether J is a sum over nodes: a friction that depends on the
+    /// pressure, and an energy that depends on the mode, have no J.
+    template <int dim>
+    bool
+    has_functional(const AdhesionIntegral<dim> &adhesion)
+    {
+      return is_sum_over_nodes(adhesion) &&
+             !adhesion.friction().depends_on_pressure() &&
+             !adhesion.points().depends_on_mode();
+    }
+
+
+
     /// The problem on the contact nodes alone.
     template <int dim>
     DiscreteProblem
@@ -290,7 +303,7 @@ namespace Debond
     files.push_back({"problem.json",
                      [has_either, condensed, &scene]() {
                        return has_either() &&
-                              is_sum_over_nodes(scene.adhesion()) &&
+                              has_functional(scene.adhesion()) &&
                               has_format(condensed());
                      },
                      [condensed](const std::string &path) {

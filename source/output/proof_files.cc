@@ -2,9 +2,9 @@
 #include <debond/base/atomic_file.h>
 #include <debond/output/proof_files.h>
 
-#include <nlohmann/json.hpp>
 #include <zlib.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,18 +16,6 @@ namespace Debond
   namespace
   {
     using Json = nlohmann::ordered_json;
-
-
-
-    /// Numbers in the fewest digits that give them back; null is infinite.
-    Json
-    json_of(const VectorView &numbers)
-    {
-      Json result = Json::array();
-      for (const double number : numbers)
-        result.push_back(std::isfinite(number) ? Json(number) : Json());
-      return result;
-    }
 
 
 
@@ -132,7 +120,7 @@ namespace Debond
           result.push_back(
             {{"unknowns", group},
              {"weight", kinks.weight(i)},
-             {"place", json_of(Eigen::VectorXd(kinks.place(group)))}});
+             {"place", json_numbers(Eigen::VectorXd(kinks.place(group)))}});
       return result;
     }
 
@@ -233,7 +221,8 @@ namespace Debond
       void
       add_round(const ProofRound &round)
       {
-        rounds.push_back({{"D", json_of(round.D)}, {"x", json_of(round.x)}});
+        rounds.push_back(
+          {{"D", json_numbers(round.D)}, {"x", json_numbers(round.x)}});
         // Planes without slope will do for the root.
         const Eigen::VectorXd forces =
           round.forces.size() > 0 ? round.forces : Eigen::VectorXd::Zero(n);
@@ -260,13 +249,24 @@ namespace Debond
           }
         tree.push_back({"cut",
                         number,
-                        json_of(round.lower.head(n)),
-                        json_of(round.upper.head(n)),
+                        json_numbers(round.lower.head(n)),
+                        json_numbers(round.upper.head(n)),
                         hold,
                         broken});
       }
     };
   } // namespace
+
+
+
+  Json
+  json_numbers(const VectorView &numbers)
+  {
+    Json result = Json::array();
+    for (const double number : numbers)
+      result.push_back(std::isfinite(number) ? Json(number) : Json());
+    return result;
+  }
 
 
 
@@ -284,9 +284,9 @@ namespace Debond
     write_json(path, [&]() -> Json {
       return {{"format", "debond problem 1"},
               {"S", reference_to("S.mtx", path)},
-              {"g", json_of(problem.g)},
+              {"g", json_numbers(problem.g)},
               {"c_0", problem.c_0},
-              {"upper", json_of(problem.upper)},
+              {"upper", json_numbers(problem.upper)},
               {"terms", terms_of(problem.phi)},
               {"friction", friction_of(problem.phi.kinks())}};
     });
@@ -299,12 +299,17 @@ namespace Debond
               const std::array<double, 2> &interval,
               const std::string           &path)
   {
+    // Who checks the ends rounds them to doubles outwards, even without loads,
+    // where J is 0 and nothing else rounds.
     write_json(path, [&]() -> Json {
       const ProofWriter tree(proof);
       return {{"format", "debond proof 1"},
               {"problem", reference_to("problem.json", path)},
-              {"state", json_of(proof.state.cwiseMin(proof.problem.upper))},
-              {"interval", interval},
+              {"state",
+               json_numbers(proof.state.cwiseMin(proof.problem.upper))},
+              {"interval",
+               {std::nextafter(interval[0], -infinity),
+                std::nextafter(interval[1], infinity)}},
               {"rounds", tree.rounds},
               {"tree", tree.tree}};
     });

@@ -340,22 +340,23 @@ def random_scene(k):
             f"Shear fracture energy={a * M * M * draw.uniform(0.1, 1.5)}")]][k % 7]]
 
 
-# Proofs of these take several nodes.
-DIVIDED = {"split": ["Cells=80, 8", "Bond stiffness=690"],
-           "states": ["Cells=20, 4", "Bond stiffness=2000", "Tangential displacement=bonded",
-                      "Bond shear stiffness=2000"]}
+# Proofs of the first two take several nodes.
+OWN = {"split": ["Cells=80, 8", "Bond stiffness=690"],
+       "states": ["Cells=20, 4", "Bond stiffness=2000", "Tangential displacement=bonded",
+                  "Bond shear stiffness=2000"],
+       "rest": ["Traction top="]}
 
 
 def check_scenes(base_scene, n):
-    """Proofs of random scenes, and of two that are divided, hold the J that is found."""
-    entries = {**DIVIDED, **{str(k): random_scene(k) for k in range(n)}}
+    """Proofs of random scenes, of two that are divided and of a body at rest hold J."""
+    entries = {**OWN, **{str(k): random_scene(k) for k in range(n)}}
     for name, own in entries.items():
         (directory / f"{name}.prm").write_text(scene_text(base_scene, [
             *NO_PICTURES, *own, "Method=automatic", "Prove=true", "Output/Proof=true",
             "Solver/Proof/Maximum time=20", f"Output/Directory=proof-{name}"]))
     result = scenes.run(*(f"{name}.prm" for name in entries))
     scenes.check("scenes run", result.returncode == 0, result.stderr)
-    for kind in DIVIDED:
+    for kind in ("split", "states"):
         tree = json.loads((directory / f"proof-{kind}" / "proof.json").read_text())["tree"]
         scenes.check(f"the tree has {kind}", any(entry[0] == kind for entry in tree))
     proved = [path.parent for path in directory.glob("proof-*/proof.json")]
@@ -363,7 +364,7 @@ def check_scenes(base_scene, n):
         found, said = Checker().run(output)
         J = json.loads((output / "summary.json").read_text())["functional"]
         scenes.check(output.name, found and max(found[0] - J, J - found[1]) <= 1e-9 * abs(J), said)
-    scenes.check("most scenes are proved", len(proved) >= 0.8 * n, len(proved))
+    scenes.check("most scenes are proved", len(proved) >= 0.8 * n + len(OWN), len(proved))
     scenes.check("no proof without Solver/Prove", "no effect of Output/Proof" in scenes.solve(
         "Output/Proof=true", scene=base_scene)["log"])
 

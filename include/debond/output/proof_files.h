@@ -4,11 +4,17 @@
 
 #include <debond/optimization/global/proof_record.h>
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <string>
 
 namespace Debond
 {
+  /// Numbers in the fewest digits that give them back; null is infinite.
+  nlohmann::ordered_json
+  json_numbers(const VectorView &numbers);
+
   /// Returns whether write_problem() has words for all terms of the problem:
   /// bonds that shear have to break at once.
   bool

@@ -49,7 +49,7 @@ namespace Debond
       return f[i][f[i].index(l(i))];
     }
 
-    /// Of bonds with a memory as those without one count them.
+    /// With a memory pieces keep the numbers that they have without one.
     PieceState
     state(const VectorView &s) const;
 
